@@ -1,0 +1,37 @@
+// SPDX-License-Identifier: MIT
+// From the words of the command line to a session.
+#pragma once
+
+#include "renderer/session.h"
+
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace penumbra {
+
+enum class Verb { Window, Capture, List };
+
+// The command line as it was written. Empty options were not given.
+struct Options {
+    Verb verb = Verb::Window;
+    std::optional<std::string> scene;
+    std::optional<std::string> technique, preset, size, seed;
+    std::vector<std::string> assignments; // --set
+    std::optional<std::string> camera, light, lightShape, lightSize, ground;
+    std::optional<std::string> time, show, exposure, ambient, textureLimit;
+    std::optional<std::string> output, buffer; // capture
+    int frames = 1;
+    int layer = 0, level = 0; // of the buffer
+    bool play = false;
+    bool json = false;
+};
+
+// Throws InputError. Nothing if the command line asked for help or the version, which is printed.
+std::optional<Options> parseCommandLine(int argc, const char* const* argv);
+
+// In this order: scene with its own camera and light, preset, technique, parameters, the rest. Throws InputError.
+Session makeSession(const Options& options);
+
+} // namespace penumbra

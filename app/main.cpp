@@ -1,0 +1,62 @@
+// SPDX-License-Identifier: MIT
+#include "app/capture.h"
+#include "app/command_line.h"
+#include "app/list.h"
+#include "app/window.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cstdio>
+#include <cstdlib>
+#include <filesystem>
+
+using namespace penumbra;
+
+namespace {
+
+std::filesystem::path picturesFolder() {
+    const char* home = std::getenv("HOME");
+    const std::filesystem::path pictures = std::filesystem::path(home ? home : "") / "Pictures";
+    std::error_code ignored;
+    return std::filesystem::is_directory(pictures, ignored) ? pictures : std::filesystem::current_path(ignored);
+}
+
+int openWindow(const Options& options) {
+    if (!std::getenv("DISPLAY") && !std::getenv("WAYLAND_DISPLAY"))
+        throw InputError("there is no display to open a window on (neither DISPLAY nor WAYLAND_DISPLAY is set); "
+                         "'penumbra capture' renders without one");
+    Session session = makeSession(options);
+    return runWindow(session, {picturesFolder(), session.size.x, session.size.y});
+}
+
+int run(const Options& options) {
+    switch (options.verb) {
+    case Verb::Window: return openWindow(options);
+    case Verb::Capture: capture(options); break;
+    case Verb::List: list(options); break;
+    }
+    if (std::fflush(stdout) != 0) throw std::runtime_error("standard output could not be written");
+    return 0;
+}
+
+int report(std::string message, int exitCode) {
+    std::replace(message.begin(), message.end(), '\n', ' ');
+    fmt::print(stderr, "penumbra: {}\n", message);
+    return exitCode;
+}
+
+} // namespace
+
+int main(int argc, char** argv) {
+    try {
+        const std::optional<Options> options = parseCommandLine(argc, argv);
+        return options ? run(*options) : 0;
+    } catch (const InputError& error) {
+        return report(error.what(), 2);
+    } catch (const std::bad_alloc&) {
+        return report("out of memory", 1);
+    } catch (const std::exception& error) {
+        return report(error.what(), 1);
+    }
+}

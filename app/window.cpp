@@ -1,0 +1,318 @@
+// SPDX-License-Identifier: MIT
+#include "app/window.h"
+
+#include "app/capture.h"
+#include "app/file_io.h"
+#include "app/preset.h"
+#include "renderer/core/paths.h"
+#include "ui/workspace.h"
+
+#include <epoxy/gl.h>
+
+#include <GLFW/glfw3.h>
+#include <backends/imgui_impl_glfw.h>
+#include <backends/imgui_impl_opengl3.h>
+#include <imgui.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <ctime>
+
+namespace penumbra {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr float fontHeight = 15;         // pixels at 96 dots per inch
+constexpr double idleSeconds = 1.0 / 30; // how long a window with nothing to show waits for input
+
+std::string& lastGlfwError() {
+    static std::string text;
+    return text;
+}
+
+class Glfw {
+public:
+    Glfw() {
+        glfwSetErrorCallback([](int, const char* text) { lastGlfwError() = text; });
+        if (!glfwInit())
+            throw InputError(
+                fmt::format("there is no display for a window ({}); `penumbra capture` needs none", lastGlfwError()));
+    }
+    ~Glfw() { glfwTerminate(); }
+    Glfw(const Glfw&) = delete;
+};
+
+// The part of the first monitor that a window may cover.
+glm::ivec2 largestWindow() {
+    int x = 0, y = 0, width = 0, height = 0;
+    if (GLFWmonitor* monitor = glfwGetPrimaryMonitor()) glfwGetMonitorWorkarea(monitor, &x, &y, &width, &height);
+    return width > 0 && height > 0 ? glm::ivec2(width, height) : glm::ivec2(16384);
+}
+
+// What the callbacks hear; taken once a frame.
+struct Heard {
+    Keys struck;
+    std::vector<std::string> dropped;
+};
+
+class Window {
+public:
+    explicit Window(const WindowOptions& options) {
+        glfwWindowHint(GLFW_CONTEXT_VERSION_MAJOR, 4);
+        glfwWindowHint(GLFW_CONTEXT_VERSION_MINOR, 5);
+        glfwWindowHint(GLFW_OPENGL_PROFILE, GLFW_OPENGL_CORE_PROFILE);
+        glfwWindowHint(GLFW_SCALE_TO_MONITOR, GLFW_TRUE);
+        glfwWindowHintString(GLFW_X11_CLASS_NAME, "penumbra");
+        const glm::ivec2 size = glm::min(glm::ivec2(options.width, options.height), largestWindow());
+        window_ = glfwCreateWindow(size.x, size.y, "Penumbra", nullptr, nullptr);
+        if (!window_)
+            throw InputError(
+                fmt::format("the window needs OpenGL 4.5, which this display does not offer ({})", lastGlfwError()));
+        glfwMakeContextCurrent(window_);
+        glfwSwapInterval(1);
+        glfwSetWindowUserPointer(window_, &heard_);
+        glfwSetKeyCallback(window_, onKey);
+        glfwSetDropCallback(window_, onDrop);
+    }
+    ~Window() { glfwDestroyWindow(window_); }
+    Window(const Window&) = delete;
+
+    GLFWwindow* get() const { return window_; }
+    bool open() const { return !glfwWindowShouldClose(window_); }
+    Heard take() { return std::exchange(heard_, {}); }
+
+    bool visible() const {
+        const glm::ivec2 pixels = framebufferSize();
+        return !glfwGetWindowAttrib(window_, GLFW_ICONIFIED) && pixels.x > 0 && pixels.y > 0;
+    }
+    glm::ivec2 framebufferSize() const {
+        glm::ivec2 size(0);
+        glfwGetFramebufferSize(window_, &size.x, &size.y);
+        return size;
+    }
+    // Pixels of the framebuffer per unit of window coordinates.
+    float pixelsPerUnit() const {
+        int width = 0, height = 0;
+        glfwGetWindowSize(window_, &width, &height);
+        return width > 0 ? static_cast<float>(framebufferSize().x) / static_cast<float>(width) : 1.0f;
+    }
+    // Pixels of the framebuffer per dot at 96 dots per inch.
+    float contentScale() const {
+        float x = 1, y = 1;
+        glfwGetWindowContentScale(window_, &x, &y);
+        return std::isfinite(x) ? std::clamp(x, 0.5f, 8.0f) : 1.0f;
+    }
+    bool down(int key) const { return glfwGetKey(window_, key) == GLFW_PRESS; }
+
+private:
+    static Heard& heard(GLFWwindow* window) { return *static_cast<Heard*>(glfwGetWindowUserPointer(window)); }
+    static void onKey(GLFWwindow* window, int key, int, int action, int modifiers);
+    static void onDrop(GLFWwindow* window, int count, const char** paths) {
+        for (int i = 0; i < count; ++i) heard(window).dropped.push_back(paths[i]);
+    }
+
+    GLFWwindow* window_ = nullptr;
+    Heard heard_;
+};
+
+void Window::onKey(GLFWwindow* window, int key, int, int action, int modifiers) {
+    if (action != GLFW_PRESS) return;
+    Keys& struck = heard(window).struck;
+    const bool control = modifiers & GLFW_MOD_CONTROL;
+    if (key == GLFW_KEY_ESCAPE) struck.escape = true;
+    if (key == GLFW_KEY_F12) struck.picture = true;
+    if (key == GLFW_KEY_F1) struck.help = true;
+    if (control && key == GLFW_KEY_Q) glfwSetWindowShouldClose(window, GLFW_TRUE);
+    if (control && key == GLFW_KEY_O) struck.open = true;
+    // Plain letters belong to whoever is being typed into.
+    if (control || ImGui::GetIO().WantTextInput) return;
+    switch (key) {
+    case GLFW_KEY_H: struck.help = true; break;
+    case GLFW_KEY_F: struck.frameScene = true; break;
+    case GLFW_KEY_R: struck.restart = true; break;
+    case GLFW_KEY_V: struck.show = true; break;
+    case GLFW_KEY_SPACE: struck.play = true; break;
+    case GLFW_KEY_B: struck.buffers = true; break;
+    case GLFW_KEY_T: struck.timings = true; break;
+    default: break;
+    }
+}
+
+Keys keysOf(const Window& window, const Keys& struck) {
+    Keys keys = struck;
+    keys.shift = window.down(GLFW_KEY_LEFT_SHIFT) || window.down(GLFW_KEY_RIGHT_SHIFT);
+    if (ImGui::GetIO().WantTextInput) return keys;
+    keys.light = window.down(GLFW_KEY_L);
+    keys.forward = window.down(GLFW_KEY_W);
+    keys.back = window.down(GLFW_KEY_S);
+    keys.left = window.down(GLFW_KEY_A);
+    keys.right = window.down(GLFW_KEY_D);
+    keys.up = window.down(GLFW_KEY_E);
+    keys.down = window.down(GLFW_KEY_Q);
+    return keys;
+}
+
+class Gui {
+public:
+    explicit Gui(Window& window) : window_(window) {
+        IMGUI_CHECKVERSION();
+        ImGui::CreateContext();
+        ImGui::GetIO().IniFilename = nullptr; // written by keepLayout, as a whole
+        ImGui_ImplGlfw_InitForOpenGL(window.get(), true);
+        ImGui_ImplOpenGL3_Init("#version 450 core");
+        std::error_code ignored;
+        if (const fs::path file = layoutFile(); fs::is_regular_file(file, ignored)) try {
+                const std::string text = readFile(file, 1 << 20);
+                ImGui::LoadIniSettingsFromMemory(text.data(), text.size());
+            } catch (const InputError&) {
+                // A layout that cannot be read is not worth a word: the window starts with its own.
+            }
+    }
+    ~Gui() {
+        ImGui_ImplOpenGL3_Shutdown();
+        ImGui_ImplGlfw_Shutdown();
+        ImGui::DestroyContext();
+    }
+    Gui(const Gui&) = delete;
+
+    // Fits theme and font to the monitor; false: there is no font with Greek letters.
+    bool fit() {
+        const float dots = window_.contentScale(), pixels = std::max(window_.pixelsPerUnit(), 0.01f);
+        if (dots == dots_ && pixels == pixels_) return true;
+        dots_ = dots;
+        pixels_ = pixels;
+        applyTheme(dots / pixels);
+        const bool found = loadFont(std::round(fontHeight * dots));
+        ImGui::GetIO().FontGlobalScale = 1 / pixels;
+        ImGui_ImplOpenGL3_DestroyFontsTexture();
+        ImGui_ImplOpenGL3_CreateFontsTexture();
+        return found;
+    }
+
+    void begin() {
+        ImGui_ImplOpenGL3_NewFrame();
+        ImGui_ImplGlfw_NewFrame();
+        ImGui::NewFrame();
+    }
+
+    void end() {
+        ImGui::Render();
+        const glm::ivec2 size = window_.framebufferSize();
+        glBindFramebuffer(GL_FRAMEBUFFER, 0);
+        glViewport(0, 0, size.x, size.y);
+        glDisable(GL_SCISSOR_TEST);
+        glClearColor(0, 0, 0, 1);
+        glClear(GL_COLOR_BUFFER_BIT);
+        ImGui_ImplOpenGL3_RenderDrawData(ImGui::GetDrawData());
+        keepLayout();
+    }
+
+private:
+    static fs::path layoutFile() {
+        const fs::path folder = configFolder();
+        return folder.empty() ? folder : folder / "layout.ini";
+    }
+    static void keepLayout() {
+        ImGuiIO& io = ImGui::GetIO();
+        if (!io.WantSaveIniSettings) return;
+        io.WantSaveIniSettings = false;
+        const fs::path file = layoutFile();
+        if (file.empty()) return;
+        std::error_code ignored;
+        fs::create_directories(file.parent_path(), ignored);
+        size_t size = 0;
+        const char* text = ImGui::SaveIniSettingsToMemory(&size);
+        try {
+            writeFileAtomically(file, {text, size});
+        } catch (const InputError&) {
+            // Where nothing can be kept, the next window starts with its own layout.
+        }
+    }
+
+    Window& window_;
+    float dots_ = 0, pixels_ = 0;
+};
+
+// FOLDER/SCENE-TECHNIQUE-YYYYMMDD-HHMMSS.png, with a number behind it where that is taken.
+fs::path pictureFile(const fs::path& folder, const Session& session) {
+    std::string scene = session.scene->name;
+    std::replace_if(
+        scene.begin(), scene.end(), [](unsigned char c) { return c < 32 || c == '/' || c == '\\'; }, '_');
+    const std::time_t now = std::time(nullptr);
+    std::tm local{};
+    localtime_r(&now, &local);
+    char moment[32];
+    std::strftime(moment, sizeof(moment), "%Y%m%d-%H%M%S", &local);
+    const std::string name = fmt::format("{}-{}-{}", scene, session.techniques.card().id, moment);
+    std::error_code ignored;
+    fs::path file = folder / (name + ".png");
+    for (int i = 2; fs::exists(file, ignored); ++i) file = folder / fmt::format("{}-{}.png", name, i);
+    return file;
+}
+
+Actions actionsOn(Session& session, const Renderer& renderer, const fs::path& picturesFolder) {
+    Actions actions;
+    actions.openScene = [&session](const std::string& nameOrFile) {
+        session.setScene(std::make_shared<const Scene>(importGltf(findScene(nameOrFile))));
+    };
+    actions.presetNames = presetNames;
+    actions.loadPreset = [&session](const std::string& name) { loadPreset(findPreset(name), session.techniques); };
+    actions.savePreset = [&session](const std::string& name) {
+        savePreset(userPresetFile(session.techniques, name), session.techniques);
+    };
+    actions.savePicture = [&session, &renderer, picturesFolder] {
+        const fs::path file = pictureFile(picturesFolder, session);
+        std::error_code ignored; // a folder that cannot be made shows when the file is written
+        fs::create_directories(picturesFolder, ignored);
+        writePicture(file, displayPicture(renderer), factsOf(session, renderer.driver()));
+        return file;
+    };
+    return actions;
+}
+
+} // namespace
+
+int runWindow(Session& session, const WindowOptions& options) {
+    const Glfw glfw;
+    Window window(options);
+    Renderer renderer;
+    Gui gui(window);
+    Workspace workspace(session, renderer, actionsOn(session, renderer, options.picturesFolder));
+    if (!gui.fit()) workspace.say("DejaVu Sans is not installed: Greek letters and signs show as '?'");
+    glfwSetWindowTitle(window.get(), fmt::format("{} – Penumbra", session.scene->name).c_str());
+
+    std::shared_ptr<const Scene> titled = session.scene;
+    auto last = std::chrono::steady_clock::now();
+    while (window.open()) {
+        if (!window.visible()) {
+            glfwWaitEvents();
+            continue;
+        }
+        if (workspace.moving())
+            glfwPollEvents();
+        else
+            glfwWaitEventsTimeout(idleSeconds);
+        if (!window.visible()) continue;
+        const auto now = std::chrono::steady_clock::now();
+        const float seconds = std::chrono::duration<float>(now - last).count();
+        last = now;
+
+        Heard heard = window.take();
+        if (!heard.dropped.empty()) workspace.openScene(std::move(heard.dropped.front()));
+        gui.fit();
+        gui.begin();
+        workspace.draw(keysOf(window, heard.struck), seconds, window.pixelsPerUnit());
+        gui.end();
+        glfwSwapBuffers(window.get());
+        if (titled != session.scene) {
+            titled = session.scene;
+            glfwSetWindowTitle(window.get(), fmt::format("{} – Penumbra", titled->name).c_str());
+        }
+    }
+    return 0;
+}
+
+} // namespace penumbra

@@ -1,0 +1,53 @@
+// SPDX-License-Identifier: MIT
+// What a shadow technique is: a title card, a list of parameters, and build(), which appends passes to a flow and
+// returns the shadow image ψ. A technique is one .cpp below renderer/techniques without a header, one shader file, and
+// one line of catalogue.cpp.
+#pragma once
+
+#include "renderer/core/flow.h"
+
+#include <memory>
+#include <span>
+#include <string_view>
+
+namespace penumbra {
+
+struct Inputs; // view, light, geometry buffer, scene: renderer/inputs.h
+
+struct Card;
+
+class Technique {
+public:
+    virtual ~Technique() = default;
+    virtual ParameterSet& parameters() = 0;
+    // Appends passes and returns ψ(x, y) in [0, 1], the fraction of the light that a pixel's surface does not see:
+    // one R32F image of the view's size named "shadow". Pixels without a surface are 0.
+    virtual Image build(Flow& flow, Scope scope, const Inputs& inputs) const = 0;
+};
+
+// The title card: who, when, what, and what it cannot do. It feeds the picker, `penumbra list` and the docs.
+struct Card {
+    std::string_view id; // lower case, hyphens; never changes once published
+    std::string_view title;
+    std::string_view authors;
+    int year = 0;
+    std::string_view venue;
+    std::string_view idea;
+    std::string_view assumes;
+    std::string_view fails;       // known failures
+    // What the contract tests allow at defaults: the mean of ψ on an empty lit floor, and 1 − ψ under a closed lid.
+    double litTolerance = 0, lidTolerance = 0;
+    std::unique_ptr<Technique> (*make)() = nullptr;
+};
+
+// The techniques in the order of the picker; renderer/techniques/catalogue.cpp.
+std::span<const Card* const> catalogue();
+// Throws InputError with the nearest id.
+const Card& findCard(std::string_view id);
+// A new technique with its parameters at their defaults, owner set.
+std::unique_ptr<Technique> makeTechnique(const Card& card);
+
+// The ψ image's channel, the same for all techniques.
+std::span<const Channel> shadowChannels();
+
+} // namespace penumbra

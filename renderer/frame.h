@@ -1,0 +1,24 @@
+// SPDX-License-Identifier: MIT
+// The whole frame as a list of passes. No OpenGL: a flow can be built, listed and tested without a GPU.
+#pragma once
+
+#include "renderer/core/flow.h"
+#include "renderer/scene/scene_state.h"
+#include "renderer/session.h"
+
+namespace penumbra {
+
+struct Frame {
+    Image shadow;  // ψ
+    Image display; // RGBA8, sRGB
+};
+
+// Appends the passes of a session's frame to a flow that has begun. `geometry` may be null: the passes are listed all
+// the same. `lastClipFromWorld` is the view of the frame before, for motion.
+Frame buildFrame(Flow& flow, const Session& session, const SceneState& state, const Geometry* geometry,
+                 const glm::mat4& lastClipFromWorld);
+
+// The view of a session: near and far planes hold the whole scene.
+View sessionView(const Session& session, const Bounds& bounds);
+
+} // namespace penumbra

@@ -1,0 +1,19 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include "renderer/core/flow.h"
+#include "renderer/gl/program.h"
+
+namespace penumbra {
+
+// Something with triangles that a Draw pass sends through the rasteriser. The vertex shader gets
+//     layout(location = 0) in vec3 positionModel;  1: vec3 normalModel;  2: vec2 uv;  3: uint drawIndex;
+// and finds the draw's matrices and material in the storage block `Draws` of shaders/draws.glsl.
+class Geometry {
+public:
+    virtual ~Geometry() = default;
+    // `masked` is the same program with MASKED defined: it discards where the base colour's alpha is below the cutoff.
+    virtual void draw(const Draw& draw, const Program& opaque, const Program& masked) const = 0;
+};
+
+} // namespace penumbra

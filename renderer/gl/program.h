@@ -1,0 +1,90 @@
+// SPDX-License-Identifier: MIT
+// Programs from files below shaders/: #include, defines, the parameter block; errors at our own file and line;
+// recompiled when a file changes on disk while the last good program keeps running.
+#pragma once
+
+#include "renderer/core/flow.h"
+#include "renderer/gl/handle.h"
+
+#include <chrono>
+#include <filesystem>
+#include <memory>
+#include <string>
+#include <vector>
+
+namespace penumbra {
+
+enum class ProgramKind { Compute, Raster }; // Raster: one file with VERTEX_SHADER and FRAGMENT_SHADER parts
+
+// A linked program and where its samplers and images are bound. Samplers get units 0, 1, 2 ... in the order that the
+// driver lists them, images likewise.
+class Program {
+public:
+    struct Binding {
+        std::string name;
+        GLuint unit;
+    };
+    GLuint name() const { return handle_.get(); }
+    const std::vector<Binding>& samplers() const { return samplers_; }
+    const std::vector<Binding>& images() const { return images_; }
+    // Whether the source text says this word: a read that no variant of the shader could use is a mistake.
+    bool mentions(std::string_view word) const;
+
+private:
+    friend class ProgramLibrary;
+    static void destroy(GLuint name) { glDeleteProgram(name); }
+    Handle<destroy> handle_;
+    std::vector<Binding> samplers_, images_;
+    std::string source_;
+};
+
+// The complete text of a program's stages, and the files it was put together from (the second number of #line).
+struct ProgramText {
+    struct StageText {
+        GLenum stage;
+        std::string text;
+    };
+    std::vector<StageText> stages;
+    std::vector<std::filesystem::path> files; // relative to the shader folder
+    std::string body;                         // without the head: version, defines, parameter block
+};
+// Throws std::runtime_error if a file cannot be read; `files` names it all the same.
+void assemble(const std::filesystem::path& folder, ProgramKind kind, std::string_view shader, const Defines& defines,
+              std::string_view parameterText, ProgramText& text);
+
+class ProgramLibrary {
+public:
+    explicit ProgramLibrary(std::filesystem::path folder) : folder_(std::move(folder)) {}
+
+    // Compiled at first use. Throws std::runtime_error with our file and line if it never compiled.
+    const Program& get(ProgramKind kind, std::string_view shader, const Defines& defines, const ParameterSet* parameters);
+
+    // Recompiles what changed on disk since; looks at most twice a second. Returns the errors of files whose newest
+    // text does not compile, one text each.
+    const std::vector<std::string>& poll();
+
+private:
+    struct File {
+        std::filesystem::path path;
+        std::filesystem::file_time_type time;
+    };
+    struct Entry {
+        ProgramKind kind;
+        std::string shader;
+        Defines defines;
+        std::string owner;                // of the parameters
+        std::vector<uint32_t> constants;  // their values that are compiled in
+        std::string parameterText;
+        Program program;
+        std::vector<File> files;
+        std::string error;
+    };
+    void build(Entry& entry) const;
+
+    std::filesystem::path folder_;
+    std::vector<std::unique_ptr<Entry>> entries_;
+    std::vector<std::string> errors_;
+    std::chrono::steady_clock::time_point lastPoll_{};
+};
+
+} // namespace penumbra

@@ -1,0 +1,76 @@
+// SPDX-License-Identifier: MIT
+#include "renderer/gl/texture.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+namespace penumbra {
+
+GlFormat glFormat(Format format) {
+    static constexpr GlFormat table[] = {
+        {GL_RGBA8, GL_RGBA, GL_FLOAT},   {GL_RGBA16_SNORM, GL_RGBA, GL_FLOAT}, {GL_R16F, GL_RED, GL_FLOAT},
+        {GL_RG16F, GL_RG, GL_FLOAT},     {GL_RGBA16F, GL_RGBA, GL_FLOAT},      {GL_R32F, GL_RED, GL_FLOAT},
+        {GL_RG32F, GL_RG, GL_FLOAT},     {GL_RGBA32F, GL_RGBA, GL_FLOAT},
+        {GL_DEPTH_COMPONENT32F, GL_DEPTH_COMPONENT, GL_FLOAT},
+    };
+    return table[static_cast<size_t>(format)];
+}
+
+Texture::Texture(std::string_view label, Format format, Extent extent) : format_(format), extent_(extent) {
+    GLint limit = 0;
+    glGetIntegerv(GL_MAX_TEXTURE_SIZE, &limit);
+    if (extent.width > limit || extent.height > limit)
+        throw InputError(fmt::format("{}: {}x{} texels are more than this driver's limit of {}x{}", label,
+                                     extent.width, extent.height, limit, limit));
+    GLuint name = 0;
+    glCreateTextures(target(), 1, &name);
+    handle_ = Handle<destroy>(name);
+    const GLenum internal = glFormat(format).internal;
+    if (extent.layers > 1)
+        glTextureStorage3D(name, extent.levels, internal, extent.width, extent.height, extent.layers);
+    else
+        glTextureStorage2D(name, extent.levels, internal, extent.width, extent.height);
+    glObjectLabel(GL_TEXTURE, name, static_cast<GLsizei>(label.size()), label.data());
+}
+
+void Texture::clear() {
+    static constexpr float zero[4] = {};
+    const GlFormat gl = glFormat(format_);
+    for (int level = 0; level < extent_.levels; ++level) glClearTexImage(name(), level, gl.layout, gl.type, zero);
+}
+
+std::vector<float> Texture::read(int layer, int level) const {
+    const int width = std::max(extent_.width >> level, 1), height = std::max(extent_.height >> level, 1);
+    const GlFormat gl = glFormat(format_);
+    std::vector<float> values(static_cast<size_t>(width) * height * info(format_).channels);
+    glPixelStorei(GL_PACK_ALIGNMENT, 4);
+    glGetTextureSubImage(name(), level, 0, 0, layer, width, height, 1, gl.layout, gl.type,
+                         static_cast<GLsizei>(values.size() * sizeof(float)), values.data());
+    return values;
+}
+
+Samplers::Samplers() {
+    static constexpr std::string_view labels[] = {"nearest", "linear", "linear mipmap", "compare"};
+    for (size_t i = 0; i < std::size(handles_); ++i) {
+        GLuint name = 0;
+        glCreateSamplers(1, &name);
+        handles_[i] = Handle<destroy>(name);
+        const Sampling sampling = static_cast<Sampling>(i);
+        const GLint filter = sampling == Sampling::Nearest ? GL_NEAREST : GL_LINEAR;
+        glSamplerParameteri(name, GL_TEXTURE_MAG_FILTER, filter);
+        glSamplerParameteri(name, GL_TEXTURE_MIN_FILTER,
+                            sampling == Sampling::LinearMipmap ? GL_LINEAR_MIPMAP_LINEAR
+                            : sampling == Sampling::Nearest    ? GL_NEAREST_MIPMAP_NEAREST
+                                                               : filter);
+        glSamplerParameteri(name, GL_TEXTURE_WRAP_S, GL_CLAMP_TO_EDGE);
+        glSamplerParameteri(name, GL_TEXTURE_WRAP_T, GL_CLAMP_TO_EDGE);
+        if (sampling == Sampling::Compare) {
+            glSamplerParameteri(name, GL_TEXTURE_COMPARE_MODE, GL_COMPARE_REF_TO_TEXTURE);
+            glSamplerParameteri(name, GL_TEXTURE_COMPARE_FUNC, GL_LEQUAL);
+        }
+        glObjectLabel(GL_SAMPLER, name, static_cast<GLsizei>(labels[i].size()), labels[i].data());
+    }
+}
+
+} // namespace penumbra

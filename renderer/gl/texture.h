@@ -1,0 +1,51 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include "renderer/core/flow.h"
+#include "renderer/gl/handle.h"
+
+#include <string_view>
+#include <vector>
+
+namespace penumbra {
+
+// Immutable storage of one image, labelled. Two-dimensional, an array where it has layers.
+class Texture {
+public:
+    Texture() = default;
+    // Throws InputError if the driver's size limit is exceeded or it has no memory for it.
+    Texture(std::string_view label, Format format, Extent extent);
+
+    GLuint name() const { return handle_.get(); }
+    GLenum target() const { return extent_.layers > 1 ? GL_TEXTURE_2D_ARRAY : GL_TEXTURE_2D; }
+    Format format() const { return format_; }
+    const Extent& extent() const { return extent_; }
+
+    void clear(); // all zero
+    // All texels of a layer and level as floats, `channels` a texel, row 0 first as OpenGL has it. Stalls.
+    std::vector<float> read(int layer = 0, int level = 0) const;
+
+private:
+    static void destroy(GLuint name) { glDeleteTextures(1, &name); }
+    Handle<destroy> handle_;
+    Format format_ = Format::RGBA8;
+    Extent extent_;
+};
+
+struct GlFormat {
+    GLenum internal, layout, type; // layout and type: as it is cleared and read back, in floats
+};
+GlFormat glFormat(Format format);
+
+// The sampler objects of enum Sampling, made once for a context.
+class Samplers {
+public:
+    Samplers();
+    GLuint get(Sampling sampling) const { return handles_[static_cast<size_t>(sampling)].get(); }
+
+private:
+    static void destroy(GLuint name) { glDeleteSamplers(1, &name); }
+    Handle<destroy> handles_[4];
+};
+
+} // namespace penumbra

@@ -1,0 +1,84 @@
+// SPDX-License-Identifier: MIT
+#include "renderer/gl/timer.h"
+
+#include <algorithm>
+
+namespace penumbra {
+namespace {
+
+double milliseconds(std::chrono::steady_clock::duration duration) {
+    return std::chrono::duration<double, std::milli>(duration).count();
+}
+
+} // namespace
+
+void PassTimer::stamp(Round& round, size_t index) {
+    if (index == round.queries.size()) {
+        GLuint name = 0;
+        glCreateQueries(GL_TIMESTAMP, 1, &name);
+        round.queries.push_back(name);
+    }
+    glQueryCounter(round.queries[index], GL_TIMESTAMP);
+}
+
+void PassTimer::collect(Round& round) {
+    GLint ready = 0;
+    glGetQueryObjectiv(round.queries[round.marks.size()], GL_QUERY_RESULT_AVAILABLE, &ready);
+    if (!ready) return;
+    times_.clear();
+    GLuint64 first = 0, before = 0, now = 0;
+    glGetQueryObjectui64v(round.queries[0], GL_QUERY_RESULT, &first);
+    before = first;
+    for (size_t i = 0; i < round.marks.size(); ++i) {
+        glGetQueryObjectui64v(round.queries[i + 1], GL_QUERY_RESULT, &now);
+        add(round.marks[i].stage, round.marks[i].label, static_cast<double>(now - before) * 1e-6);
+        before = now;
+    }
+    frameMilliseconds_ = static_cast<double>(before - first) * 1e-6;
+    round.pending = false;
+}
+
+void PassTimer::add(Stage stage, int label, double ms) {
+    const auto known = std::find_if(times_.begin(), times_.end(), [&](const PassTime& t) { return t.label == label; });
+    if (known != times_.end())
+        known->milliseconds += ms;
+    else
+        times_.push_back({stage, label, ms});
+}
+
+void PassTimer::beginFrame(Timing timing) {
+    timing_ = timing;
+    if (timing == Timing::Queries) {
+        round_ = (round_ + 1) % rounds_.size();
+        for (size_t i = 0; i < rounds_.size(); ++i) { // oldest first
+            Round& round = rounds_[(round_ + i) % rounds_.size()];
+            if (round.pending) collect(round);
+        }
+        rounds_[round_].marks.clear();
+        stamp(rounds_[round_], 0);
+    } else if (timing == Timing::Finish) {
+        glFinish();
+        times_.clear();
+        frameStart_ = passStart_ = Clock::now();
+    }
+}
+
+void PassTimer::endPass(Stage stage, int label) {
+    if (timing_ == Timing::Queries) {
+        Round& round = rounds_[round_];
+        round.marks.push_back({stage, label});
+        stamp(round, round.marks.size());
+    } else if (timing_ == Timing::Finish) {
+        glFinish();
+        const Clock::time_point now = Clock::now();
+        add(stage, label, milliseconds(now - passStart_));
+        passStart_ = now;
+    }
+}
+
+void PassTimer::endFrame() {
+    if (timing_ == Timing::Queries) rounds_[round_].pending = true;
+    if (timing_ == Timing::Finish) frameMilliseconds_ = milliseconds(Clock::now() - frameStart_);
+}
+
+} // namespace penumbra

@@ -1,0 +1,64 @@
+// SPDX-License-Identifier: MIT
+// Times the passes of a frame: with timer queries that never stall, or with glFinish and a steady clock, which is the
+// only honest way on a renderer that defers its work (llvmpipe reports a fiftieth of what a raster pass takes).
+#pragma once
+
+#include "renderer/core/flow.h"
+#include "renderer/gl/handle.h"
+
+#include <array>
+#include <chrono>
+#include <vector>
+
+namespace penumbra {
+
+enum class Timing {
+    Off,
+    Queries, // GPU timer queries, read some frames later: never stalls
+    Finish,  // glFinish around each pass and a steady clock
+};
+
+struct PassTime {
+    Stage stage;
+    int label; // of the flow
+    double milliseconds;
+};
+
+class PassTimer {
+public:
+    void beginFrame(Timing timing);
+    void endPass(Stage stage, int label);
+    void endFrame();
+
+    // The newest frame whose times are known, in pass order; passes of one label are summed.
+    const std::vector<PassTime>& times() const { return times_; }
+    double frameMilliseconds() const { return frameMilliseconds_; } // first pass to last; 0: not known yet
+
+private:
+    using Clock = std::chrono::steady_clock;
+    struct Mark {
+        Stage stage;
+        int label;
+    };
+    // Timestamps of one frame under way: query 0 before the first pass, query i + 1 behind pass i.
+    struct Round {
+        std::vector<GLuint> queries;
+        std::vector<Mark> marks;
+        bool pending = false;
+        Round() = default;
+        Round(const Round&) = delete;
+        ~Round() { glDeleteQueries(static_cast<GLsizei>(queries.size()), queries.data()); }
+    };
+    void stamp(Round& round, size_t index);
+    void collect(Round& round);
+    void add(Stage stage, int label, double milliseconds);
+
+    Timing timing_ = Timing::Off;
+    std::array<Round, 4> rounds_{};
+    size_t round_ = 0;
+    Clock::time_point frameStart_, passStart_;
+    std::vector<PassTime> times_;
+    double frameMilliseconds_ = 0;
+};
+
+} // namespace penumbra

@@ -1,0 +1,77 @@
+// SPDX-License-Identifier: MIT
+#include "renderer/renderer.h"
+
+#include "renderer/scene/gpu_scene.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+namespace penumbra {
+
+namespace {
+
+// The driver in words; throws InputError if it is not OpenGL 4.5.
+std::string checkedDriver() {
+    const auto text = [](GLenum name) { return reinterpret_cast<const char*>(glGetString(name)); };
+    if (!epoxy_is_desktop_gl() || epoxy_gl_version() < 45)
+        throw InputError(fmt::format("OpenGL 4.5 is needed, this driver gives {} ({})", text(GL_VERSION), text(GL_RENDERER)));
+    return fmt::format("{}, {}", text(GL_RENDERER), text(GL_VERSION));
+}
+
+} // namespace
+
+Renderer::Renderer() : driver_(checkedDriver()) {
+    for (const std::string_view name : {"llvmpipe", "softpipe", "SWR"})
+        software_ = software_ || driver_.find(name) != std::string::npos;
+    glPixelStorei(GL_UNPACK_ALIGNMENT, 1);
+}
+
+Renderer::~Renderer() = default;
+
+void Renderer::reset() {
+    flow_.forget();
+    lastClipFromWorld_.reset();
+}
+
+void Renderer::render(const Session& session, Timing timing) {
+    if (scene_ != session.scene) {
+        scene_ = session.scene;
+        state_.setScene(scene_);
+        geometry_.reset();
+        reset();
+    }
+    state_.update(session.time, session.ground);
+    if (geometry_)
+        geometry_->update(state_);
+    else
+        geometry_ = std::make_unique<GpuScene>(state_);
+
+    const glm::mat4 clipFromWorld = sessionView(session, state_.bounds()).clipFromWorld;
+    flow_.begin();
+    try {
+        frame_ = buildFrame(flow_, session, state_, geometry_.get(), lastClipFromWorld_.value_or(clipFromWorld));
+        flow_.refuseAbove(session.textureLimit);
+        runner_.run(flow_, timing);
+    } catch (...) {
+        reset();
+        frame_.reset();
+        throw;
+    }
+    lastClipFromWorld_ = clipFromWorld;
+}
+
+Renderer::Pixels Renderer::read(Image image, int layer, int level) const {
+    const Texture& texture = runner_.texture(flow_, image);
+    const Extent& extent = texture.extent();
+    ensure(layer >= 0 && layer < extent.layers && level >= 0 && level < extent.levels, "a layer or level that is not there");
+    Pixels pixels{std::max(extent.width >> level, 1), std::max(extent.height >> level, 1), info(texture.format()).channels,
+                  texture.read(layer, level)};
+    const auto row = static_cast<std::ptrdiff_t>(pixels.width) * pixels.channels;
+    for (std::ptrdiff_t low = 0, high = pixels.height - 1; low < high; ++low, --high)
+        std::swap_ranges(pixels.values.begin() + low * row, pixels.values.begin() + (low + 1) * row,
+                         pixels.values.begin() + high * row);
+    return pixels;
+}
+
+} // namespace penumbra

@@ -1,0 +1,64 @@
+// SPDX-License-Identifier: MIT
+// Draws sessions. Needs a current OpenGL 4.5 context; knows no window.
+#pragma once
+
+#include "renderer/core/paths.h"
+#include "renderer/frame.h"
+#include "renderer/gl/flow_runner.h"
+
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace penumbra {
+
+class GpuScene;
+
+class Renderer {
+public:
+    Renderer(); // throws InputError if the context is not OpenGL 4.5
+    ~Renderer();
+
+    // Draws one frame of the session at session.size. Throws InputError, before anything is drawn, if it would hold more
+    // textures than session.textureLimit or one that the driver cannot have. There is no frame to look at then, and the
+    // next one is a first one.
+    void render(const Session& session, Timing timing = Timing::Off);
+    // Drops all history: the next frame is the first.
+    void reset();
+
+    const Flow& flow() const { return flow_; }
+    const FlowRunner& runner() const { return runner_; }
+    const SceneState& state() const { return state_; }
+    // Whether the last render() succeeded, so that there are images.
+    bool hasFrame() const { return frame_.has_value(); }
+    // Images of the last frame. `shadow` is ψ; `display` is RGBA8, sRGB encoded, row 0 below as OpenGL has it.
+    Image display() const { return frame_->display; }
+    Image shadow() const { return frame_->shadow; }
+
+    // Reads an image back: `channels` floats a texel, row 0 at the top. Stalls.
+    struct Pixels {
+        int width = 0, height = 0, channels = 0;
+        std::vector<float> values;
+    };
+    Pixels read(Image image, int layer = 0, int level = 0) const;
+
+    // Recompiles shaders whose files changed on disk; call now and then. Errors stay until mended, one text each with
+    // our file and line; the last good program runs on meanwhile.
+    const std::vector<std::string>& pollShaders() { return programs_.poll(); }
+    bool softwareRenderer() const { return software_; }
+    const std::string& driver() const { return driver_; } // "llvmpipe (...), Mesa ..."
+
+private:
+    std::string driver_; // first: its initialisation refuses what is not OpenGL 4.5
+    ProgramLibrary programs_{shaderFolder()};
+    Flow flow_;
+    FlowRunner runner_{programs_};
+    SceneState state_;
+    std::unique_ptr<GpuScene> geometry_;
+    std::shared_ptr<const Scene> scene_;
+    std::optional<Frame> frame_;
+    std::optional<glm::mat4> lastClipFromWorld_;
+    bool software_ = false;
+};
+
+} // namespace penumbra

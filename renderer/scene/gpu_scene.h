@@ -1,0 +1,55 @@
+// SPDX-License-Identifier: MIT
+// The scene's vertices, matrices and textures on the GPU, drawn in few calls.
+#pragma once
+
+#include "renderer/gl/buffer.h"
+#include "renderer/gl/geometry.h"
+#include "renderer/gl/texture.h"
+#include "renderer/scene/scene_state.h"
+
+#include <memory>
+#include <vector>
+
+namespace penumbra {
+
+class GpuScene final : public Geometry {
+public:
+    explicit GpuScene(const SceneState& state);
+    // Sends the matrices of the state if they changed.
+    void update(const SceneState& state);
+    void draw(const Draw& draw, const Program& opaque, const Program& masked) const override;
+
+private:
+    // As glMultiDrawElementsIndirect reads it.
+    struct Command {
+        uint32_t count, instances, firstIndex;
+        int32_t baseVertex;
+        uint32_t baseInstance; // = index into Draws
+    };
+    // Neighbouring commands that may be drawn in one call for every purpose.
+    struct Batch {
+        uint32_t firstCommand, commandCount;
+        int texture; // of Scene::textures, -1: white
+        bool masked, doubleSided, mirrored, casts;
+    };
+    struct DrawData { // shaders/draws.glsl
+        glm::mat4 worldFromModel, lastWorldFromModel;
+        glm::vec4 baseColour, emissive_cutoff;
+    };
+    static void destroyVertexArray(GLuint name) { glDeleteVertexArrays(1, &name); }
+    static void destroyTexture(GLuint name) { glDeleteTextures(1, &name); }
+    using TextureHandle = Handle<destroyTexture>;
+    static TextureHandle upload(const TextureImage& image);
+
+    std::vector<uint32_t> drawableOfCommand_; // index into SceneState::drawables(); drawables().size(): the ground
+    std::vector<Batch> batches_;
+    std::vector<DrawData> draws_; // one per command
+    Buffer positions_, normals_, uvs_, indices_, drawIndices_, commands_, drawBuffer_;
+    Handle<destroyVertexArray> vertexArray_;
+    std::vector<TextureHandle> textures_; // as Scene::textures, then white
+    uint64_t sentVersion_ = 0;
+    bool sentMotion_ = false; // the last matrices sent differ between frames
+    uint32_t groundVertices_ = 0;
+};
+
+} // namespace penumbra

@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: MIT
+// The area light: a rectangle or a disk with a pose and a size in metres, or a directional light with an angular
+// diameter. Its size belongs to the light alone; every technique and the truth read it from here.
+#pragma once
+
+#include <glm/glm.hpp>
+
+#include <span>
+#include <string_view>
+
+namespace penumbra {
+
+enum class LightShape { Rectangle, Disk, Directional };
+std::span<const std::string_view> lightShapeNames(); // "rectangle", "disk", "directional"
+
+struct AreaLight {
+    LightShape shape = LightShape::Rectangle;
+    glm::vec3 position{0, 4,
+                       0};     // its centre, world [m]; a directional light has only its direction from here to target
+    glm::vec3 target{0, 0, 0}; // the point that it faces, world [m]
+    glm::vec2 size{1, 1};      // rectangle: full width and height [m]; disk: x = diameter [m];
+                               // directional: x = angular diameter [degrees] of a disk (the sun: 0.533)
+    glm::vec3 colour{1, 1, 1}; // linear, times intensity
+    float intensity = 1;       // irradiance at the target when it faces the light, relative to white
+
+    bool operator==(const AreaLight&) const = default;
+};
+
+// Orthonormal; the light looks down −Z, its width is along X, which is horizontal. A light straight above or below has
+// its X along world X. A light that stands on its target looks down world −Y.
+glm::mat4 lightFromWorld(const AreaLight& light);
+
+// Half the size along X and Y [m] (a disk: its radius, twice; directional: tan of the angular radius, twice, no unit).
+glm::vec2 halfSize(const AreaLight& light);
+
+// The point of the light that belongs to `u` in [0, 1)², in light space [m] (z = 0); area-preserving: rectangles
+// stretch the square, disks use the concentric map (Shirley and Chiu 1997). A directional light's point is the tangent
+// offset (x, y) of its direction: seen from any receiver, the sample lies towards normalize((x, y, 1)) in light space,
+// since the light looks down −Z and +Z points back to it.
+glm::vec2 lightPoint(const AreaLight& light, glm::vec2 u);
+
+} // namespace penumbra

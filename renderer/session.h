@@ -1,0 +1,81 @@
+// SPDX-License-Identifier: MIT
+// Everything that decides a picture. The command line fills one, the panels edit one, the renderer draws one.
+#pragma once
+
+#include "renderer/core/technique.h"
+#include "renderer/scene/scene.h"
+
+#include <memory>
+#include <vector>
+
+namespace penumbra {
+
+// What the values of a session may be, both ends included.
+struct Range {
+    double min, max;
+};
+namespace limits {
+inline constexpr Range pixels{1, 16384};             // of each side of the picture
+inline constexpr Range coordinate{-1e6, 1e6};        // of eyes, targets and lights [m]
+inline constexpr Range fovY{1, 170};                 // [degrees]
+inline constexpr Range lightMetres{1e-6, 1e5};       // width, height or diameter of a light
+inline constexpr Range lightDegrees{1e-3, 120};      // angular diameter of a directional light
+inline constexpr Range seconds{0, 1e7};              // of the animation
+inline constexpr Range exposure{-20, 20};            // [stops]
+inline constexpr Range ambient{0, 100};
+inline constexpr Range textureMebibytes{1, 1 << 20};
+} // namespace limits
+
+enum class Show { Lit, Shadow };
+
+struct DisplaySettings {
+    Show show = Show::Lit;
+    float exposure = 0;    // stops
+    float ambient = 0.25f; // light from everywhere, relative to the area light's irradiance
+};
+
+// One instance of every technique of the catalogue, so that switching to and fro loses no value; one is chosen.
+class TechniqueShelf {
+public:
+    TechniqueShelf();
+    void choose(std::string_view id); // throws InputError
+    const Card& card() const;
+    Technique& technique() const { return *techniques_[chosen_]; }
+    ParameterSet& parameters() const { return technique().parameters(); }
+    ParameterSet& parametersOf(std::string_view id) const; // throws InputError
+
+    // "pcf.kernel=9" or, for the chosen technique, "kernel=9". Throws InputError.
+    void assign(std::string_view assignment) const;
+
+private:
+    std::vector<std::unique_ptr<Technique>> techniques_; // in the order of the catalogue
+    size_t chosen_ = 0;
+};
+
+struct Session {
+    std::shared_ptr<const Scene> scene;
+    Camera camera;
+    AreaLight light;
+    bool ground = false; // the extra plane below the scene
+    TechniqueShelf techniques;
+    DisplaySettings display;
+    double time = 0;      // of the scene's animation [s]
+    double timeStep = 0;  // how far it moves from frame to frame [s]; 0: a still scene
+    uint32_t frame = 0;   // frames since the last reset
+    uint32_t seed = 0;
+    glm::ivec2 size{1280, 720};
+    uint64_t textureLimit = uint64_t{4} << 30; // bytes
+
+    // Takes a scene and the camera, light and ground that suit it.
+    void setScene(std::shared_ptr<const Scene> newScene);
+};
+
+// Gives a light another shape. Between metres and degrees its size is converted so that the target sees it as large.
+void changeShape(AreaLight& light, LightShape shape);
+
+// The scenes of assets/scenes by name, "courtyard" first.
+std::vector<std::string> builtInScenes();
+// SCENE of the command line: a file, or the name of a built-in scene. Throws InputError.
+std::filesystem::path findScene(std::string_view nameOrFile);
+
+} // namespace penumbra

@@ -1,0 +1,192 @@
+// SPDX-License-Identifier: MIT
+#include "renderer/shadow_map/shadow_map.h"
+
+#include "renderer/core/technique.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+namespace penumbra {
+namespace {
+
+using glm::vec3;
+
+constexpr float nearestShare = 1e-4f; // the near plane is never nearer than this share of the far one
+constexpr float widestTangent = 5.67f; // a perspective map opens to 80° on either side of the axis
+constexpr int borderTexels = 1; // stays empty: a lookup outside is clamped to it and finds no caster
+
+// An axis-aligned rectangle on the reference plane [m].
+struct Window {
+    vec2 min{1e30f}, max{-1e30f};
+    bool empty() const { return min.x >= max.x || min.y >= max.y; }
+    void add(vec2 p) { min = glm::min(min, p), max = glm::max(max, p); }
+    Window grown(vec2 by) const { return {min - by, max + by}; }
+    Window intersected(const Window& o) const { return {glm::max(min, o.min), glm::min(max, o.max)}; }
+};
+
+// The eight corners of a box in light space, z turned into the axial depth d = −z.
+std::array<vec3, 8> cornersInLight(const Bounds& box, const mat4& lightFromWorld) {
+    std::array<vec3, 8> corners;
+    for (int i = 0; i < 8; ++i) {
+        const vec3 world{i & 1 ? box.max.x : box.min.x, i & 2 ? box.max.y : box.min.y, i & 4 ? box.max.z : box.min.z};
+        const vec3 light = vec3(lightFromWorld * vec4(world, 1));
+        corners[static_cast<size_t>(i)] = {light.x, light.y, -light.z};
+    }
+    return corners;
+}
+
+struct Fit {
+    float near, far, reference;
+    Window window;
+};
+
+// Where the box's corners fall on the reference plane, from every corner of the light. Parts before the near plane are
+// moved onto it, with the whole box's cross-section, which contains theirs.
+Window project(const std::array<vec3, 8>& corners, const Fit& fit, vec2 halfLight, bool directional) {
+    Window window;
+    const bool straddles = std::any_of(corners.begin(), corners.end(), [&](vec3 c) { return c.z < fit.near; });
+    const auto add = [&](vec2 xy, float d) {
+        for (int i = 0; i < 4; ++i) {
+            const vec2 s = halfLight * vec2(i & 1 ? 1 : -1, i & 2 ? 1 : -1);
+            window.add(directional ? xy + s * (d - fit.reference) : s + (xy - s) * (fit.reference / d));
+        }
+    };
+    for (const vec3& c : corners) {
+        if (straddles && !directional) add(vec2(c), fit.near);
+        if (directional || c.z >= fit.near) add(vec2(c), c.z);
+    }
+    return window;
+}
+
+Fit fitMap(const AreaLight& light, std::span<const Occluder> occluders, const mat4& fromWorld, vec2 half) {
+    const bool directional = light.shape == LightShape::Directional;
+    float nearest = 1e30f, farthest = -1e30f;
+    for (const Occluder& occluder : occluders) {
+        for (const vec3& c : cornersInLight(occluder.boundsWorld, fromWorld)) {
+            if (occluder.casts) nearest = std::min(nearest, c.z);
+            farthest = std::max(farthest, c.z);
+        }
+    }
+    Fit fit{0, 1, 1, {{-1, -1}, {1, 1}}};
+    const bool nothing = nearest > farthest || (!directional && farthest <= 0);
+    if (nothing) return fit;
+
+    const float slack = 1e-3f * std::max(farthest - nearest, 1e-6f * std::abs(farthest)) + 1e-20f;
+    fit.far = farthest + slack;
+    fit.near = directional ? nearest - slack : std::max(nearest - slack, nearestShare * fit.far);
+    fit.far = std::max(fit.far, fit.near + slack);
+    fit.reference = fit.far;
+
+    Window casters, receivers;
+    for (const Occluder& occluder : occluders) {
+        const auto corners = cornersInLight(occluder.boundsWorld, fromWorld);
+        if (!directional && std::all_of(corners.begin(), corners.end(), [&](vec3 c) { return c.z < fit.near; })) continue;
+        const Window window = project(corners, fit, half, directional);
+        // A receiver looks at the whole light, past blockers that fall beside it on the reference plane.
+        float d = -1e30f;
+        for (const vec3& c : corners) d = std::max(d, c.z);
+        const vec2 sees = directional ? half * (d - fit.near) : half * (fit.reference * (1 / fit.near - 1 / d));
+        const Window seen = window.grown(glm::max(sees, vec2(0)));
+        receivers.add(seen.min), receivers.add(seen.max);
+        if (occluder.casts) casters.add(window.min), casters.add(window.max);
+    }
+    fit.window = casters.intersected(receivers);
+    if (!directional) {
+        const vec2 widest = half + widestTangent * fit.reference;
+        fit.window = fit.window.intersected({-widest, widest});
+    }
+    if (fit.window.empty()) fit.window = {vec2(-1e-3f * fit.far), vec2(1e-3f * fit.far)};
+    return fit;
+}
+
+} // namespace
+
+LightViewBlock lightView(const Inputs& inputs, LightSample s, int size) {
+    const AreaLight& light = inputs.light;
+    const bool directional = light.shape == LightShape::Directional;
+    const mat4 fromWorld = lightFromWorld(light);
+    const vec2 half = halfSize(light);
+    const Fit fit = fitMap(light, inputs.occluders, fromWorld, half);
+    const float f = fit.reference;
+
+    // Square texels, and a border of empty ones.
+    const vec2 centre = 0.5f * (fit.window.min + fit.window.max);
+    const vec2 extent = fit.window.max - fit.window.min;
+    const float side = std::max(extent.x, extent.y);
+    const float h = 0.5f * side * static_cast<float>(size) / static_cast<float>(std::max(size - 2 * borderTexels, 1));
+
+    // clip = M · light-space position, row by row; see shaders/shared/view.glsl.h for the map's coordinates.
+    mat4 rows(0);
+    if (directional) {
+        // x = (P.x + s.x (d − f) − c.x) / h with d = −z
+        rows[0] = vec4(1, 0, -s.x, -s.x * f - centre.x) / h;
+        rows[1] = vec4(0, 1, -s.y, -s.y * f - centre.y) / h;
+        rows[2] = vec4(0, 0, -2, -(fit.far + fit.near)) / (fit.far - fit.near);
+        rows[3] = vec4(0, 0, 0, 1);
+    } else {
+        // w = d; x w = ((s.x − c.x) d + (P.x − s.x) f) / h
+        rows[0] = vec4(f, 0, -(s.x - centre.x), -s.x * f) / h;
+        rows[1] = vec4(0, f, -(s.y - centre.y), -s.y * f) / h;
+        rows[2] = vec4(0, 0, -(fit.far + fit.near), -2 * fit.far * fit.near) / (fit.far - fit.near);
+        rows[3] = vec4(0, 0, -1, 0);
+    }
+    LightViewBlock block;
+    block.lightFromWorld = fromWorld;
+    block.clipFromWorld = glm::transpose(rows) * fromWorld;
+    block.sample_reference = {s, f, directional ? 1.0f : 0.0f};
+    block.window = {centre, h, h};
+    block.range = {fit.near, fit.far, 1 / (fit.far - fit.near), 0};
+    block.light = {half, size, light.shape == LightShape::Rectangle ? 0.0f : 1.0f};
+    return block;
+}
+
+Image drawShadowMap(Flow& flow, Scope scope, const Inputs& inputs, const LightViewBlock& view, Faces faces) {
+    static constexpr Channel channels[] = {
+        {"depth", "z", "linear depth from the light, (d − near) / (far − near); 1: nothing casts", Unit::DepthRange, 0, 1}};
+    const int size = static_cast<int>(view.light.z);
+    Draw draw{.shader = "shadow_map.glsl",
+              .geometry = inputs.geometry,
+              .poseVersion = inputs.poseVersion,
+              .faces = faces,
+              .castersOnly = true,
+              .depthClamp = true,
+              .border = borderTexels};
+    // The rasteriser's depth of an orthographic map is the stored depth already.
+    if (view.sample_reference.w == 0) draw.defines.push_back({"LINEAR_DEPTH"});
+    return flow.pass(scope, {.stage = Stage::ShadowMap,
+                             .name = "shadow-map",
+                             .work = draw,
+                             .writes = {{"shadow-map", Format::Depth32F, {size, size}, channels}},
+                             .constants = view});
+}
+
+ViewBlock viewBlock(const View& view) {
+    return {view.clipFromWorld,
+            vec4(view.eyeWorld, 0),
+            vec4(view.rayCorner, 0),
+            vec4(view.rayDx, 0),
+            vec4(view.rayDy, 0),
+            vec4(view.size, view.near, view.far)};
+}
+
+ResolveConstants resolveConstants(const Inputs& inputs, const LightViewBlock& light) {
+    return {viewBlock(inputs.view), light};
+}
+
+Image resolve(Flow& flow, Scope scope, const Inputs& inputs, const Resolver& resolver, std::initializer_list<Read> reads,
+              const ParameterSet& parameters) {
+    Compute work{resolver.shader, {{"DIRECTIONAL", inputs.light.shape == LightShape::Directional ? 1 : 0}}};
+    if (resolver.table > 0) work.defines.push_back({"TABLE", resolver.table});
+    PassSpec pass{.stage = Stage::Resolve,
+                  .name = "resolve",
+                  .work = work,
+                  .reads = {{"depth", inputs.geometryBuffer.depth}, {"normal", inputs.geometryBuffer.normal}},
+                  .writes = {{"shadow", Format::R32F, {inputs.view.size.x, inputs.view.size.y}, shadowChannels()}},
+                  .constants = resolver.constants,
+                  .parameters = &parameters};
+    for (const Read& read : reads) pass.reads.push_back(read);
+    return flow.pass(scope, pass);
+}
+
+} // namespace penumbra

@@ -1,0 +1,106 @@
+// SPDX-License-Identifier: MIT
+// Depth as seen from a point of the light: how a map is described, fitted to the scene, drawn and looked up.
+#pragma once
+
+#include "renderer/inputs.h"
+#include "renderer/shared.h"
+
+namespace penumbra {
+
+// What every technique that reads a shadow map lets its user turn.
+struct ShadowMapParameters : ParameterGroup {
+    explicit ShadowMapParameters(ParameterSet& s) : ParameterGroup(s, "Shadow map") {}
+    Integer size{set,
+                 {.id = "map-size",
+                  .label = "Map size",
+                  .value = 1024,
+                  .min = 16,
+                  .max = 16384,
+                  .unit = Unit::Texels,
+                  .scale = Scale::Logarithmic,
+                  .source = "Williams 1978",
+                  .help = "Texels along a side of the shadow map. Finer edges and less bias for more memory and time."}};
+    Choice<Faces> faces{set,
+                        {.id = "faces",
+                         .source = "Reeves 1987; Wang and Molnar 1994 (back faces)",
+                         .help = "Which faces cast. Both is right for every scene; back faces need no bias on closed "
+                                 "objects, but leak light at thin ones.",
+                         .choices = facesNames}};
+    End end{set};
+
+    static constexpr std::string_view facesNames[] = {"both", "front", "back"};
+};
+
+// How a comparison is kept from finding a surface in its own shadow (acne) without letting light under things.
+struct BiasParameters : ParameterGroup {
+    struct Defaults {
+        double slope, normalOffset;
+    };
+    BiasParameters(ParameterSet& s, Defaults defaults)
+        : ParameterGroup(s, "Bias"),
+          constant{set,
+                   {.id = "depth-bias",
+                    .label = "Depth bias",
+                    .value = 2e-5,
+                    .min = 0,
+                    .max = 0.1,
+                    .unit = Unit::DepthRange,
+                    .scale = Scale::Logarithmic,
+                    .smallest = 1e-7,
+                    .source = "Williams 1978",
+                    .help = "Added to every stored depth, as a share of the map's depth range. Hides rounding; more of "
+                            "it detaches shadows from what casts them."}},
+          slope{set,
+                {.id = "slope-bias",
+                 .label = "Slope bias",
+                 .value = defaults.slope,
+                 .min = 0,
+                 .max = 16,
+                 .unit = Unit::Texels,
+                 .source = "King 2004; OpenGL polygon offset",
+                 .help = "Depth by which the receiver's plane rises over this many texels. Half a texel removes acne "
+                         "from planes that are compared at their own depth; surfaces that graze the light then leak."}},
+          normalOffset{set,
+                       {.id = "normal-offset",
+                        .label = "Normal offset",
+                        .value = defaults.normalOffset,
+                        .min = 0,
+                        .max = 16,
+                        .unit = Unit::Texels,
+                        .source = "Holbert 2011",
+                        .help = "Moves the looked-up point off its surface by this many texels times the sine of the "
+                                "angle to the light. Never diverges, but makes thin shadows thinner."}} {}
+    Real constant, slope, normalOffset;
+    End end{set};
+};
+
+// A point on the light, in light space: lightPoint() of scene/light.h. Zero is the light's centre.
+using LightSample = glm::vec2;
+inline constexpr LightSample lightCentre{0, 0};
+
+// The projection of a map of size² texels from a point of the light. The window is fitted to all casters and receivers
+// as seen from the whole light, so it is the same for every sample.
+LightViewBlock lightView(const Inputs& inputs, LightSample sample, int size);
+
+// Draws the map: one Depth32F image "shadow-map" of linear axial depth in [0, 1], 1 where nothing casts.
+Image drawShadowMap(Flow& flow, Scope scope, const Inputs& inputs, const LightViewBlock& view, Faces faces);
+
+// The front of the constants of every pass that includes shaders/resolve.glsl.
+struct ResolveConstants {
+    ViewBlock view;
+    LightViewBlock lightView;
+};
+ViewBlock viewBlock(const View& view);
+ResolveConstants resolveConstants(const Inputs& inputs, const LightViewBlock& light);
+
+// A shader that includes shaders/resolve.glsl, and its constants: ResolveConstants, then `table` vectors of its own.
+struct Resolver {
+    std::string_view shader;
+    Constants constants;
+    int table = 0;
+};
+// Appends its pass: reads depth, normal and `reads`, writes ψ as "shadow".
+Image resolve(Flow& flow, Scope scope, const Inputs& inputs, const Resolver& resolver, std::initializer_list<Read> reads,
+              const ParameterSet& parameters);
+
+} // namespace penumbra

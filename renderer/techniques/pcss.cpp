@@ -1,0 +1,103 @@
+// SPDX-License-Identifier: MIT
+// Percentage-closer soft shadows (Fernando, SIGGRAPH sketch 2005), as the 2009 paper and the thesis judge themselves
+// against (Scherzer et al. 2009 eq. 6, figure 4).
+//
+//   1. blocker search: mean depth d_b of the texels in front of the receiver's plane, over the region through which the
+//      receiver sees the light past the nearest caster
+//   2. penumbra: half size on the reference plane r f (1/d_b − 1/d_r), directional r (d_r − d_b)
+//   3. percentage-closer filter over that region
+//
+// Region and filter have the shape of the light: a square grid of strata for a rectangle, a spiral for a disk. Exact for
+// a light, one blocker depth and a receiver that are parallel. N_b + N_f texture reads a pixel; N_b where nothing blocks.
+#include "renderer/core/technique.h"
+#include "renderer/shadow_map/shadow_map.h"
+
+namespace penumbra {
+namespace {
+
+constexpr int mostTaps = 64;
+
+struct Parameters : ParameterSet {
+    ShadowMapParameters map{*this};
+    Integer searchTaps{*this,
+                       {.id = "search-taps",
+                        .label = "Blocker search taps",
+                        .symbol = "N_b",
+                        .value = 16,
+                        .min = 1,
+                        .max = mostTaps,
+                        .unit = Unit::Samples,
+                        .source = "Fernando 2005; Scherzer 2009 figure 4 (16, 32)",
+                        .help = "Texels looked at for blockers. Too few miss thin casters and make the width noisy; this "
+                                "is the cost of every lit pixel."}};
+    Integer filterTaps{*this,
+                       {.id = "filter-taps",
+                        .label = "Filter taps",
+                        .symbol = "N_f",
+                        .value = 16,
+                        .min = 1,
+                        .max = mostTaps,
+                        .unit = Unit::Samples,
+                        .source = "Fernando 2005; Scherzer 2009 figure 4 (16, 32)",
+                        .help = "Comparisons averaged over the penumbra. Fewer leave noise or bands in wide penumbrae; "
+                                "paid only where something blocks."}};
+    Real lightScale{*this,
+                    {.id = "light-scale",
+                     .label = "Light scale",
+                     .value = 1,
+                     .min = 0,
+                     .max = 4,
+                     .help = "Widens or narrows the penumbrae beyond what the light's size gives. 1 is the light itself; "
+                             "anything else departs from the truth."}};
+    Flag rotate{*this,
+                {.id = "rotate",
+                 .label = "Shift per pixel",
+                 .value = 1,
+                 .source = "Cranley and Patterson 1976; Jimenez 2014 (noise)",
+                 .help = "Shifts or turns the taps differently in every pixel: bands become noise."}};
+    Flag receiverPlane{*this,
+                       {.id = "receiver-plane",
+                        .label = "Receiver plane",
+                        .value = 1,
+                        .source = "Isidoro 2006; here the plane itself instead of its slope",
+                        .help = "Compares each texel with the depth of the receiver's plane there instead of one depth, "
+                                "without which wide penumbrae need a bias that detaches them."}};
+    BiasParameters bias{*this, {.slope = 0.05, .normalOffset = 0.5}};
+};
+
+class Pcss final : public Technique {
+public:
+    ParameterSet& parameters() override { return parameters_; }
+    Image build(Flow& flow, Scope scope, const Inputs& inputs) const override {
+        const LightViewBlock light = lightView(inputs, lightCentre, parameters_.map.size);
+        const Image map = drawShadowMap(flow, scope, inputs, light, parameters_.map.faces);
+        return resolve(flow, scope, inputs,
+                       {.shader = "techniques/pcss.glsl", .constants = resolveConstants(inputs, light)},
+                       {{"shadowMap", map}}, parameters_);
+    }
+
+private:
+    Parameters parameters_;
+};
+
+} // namespace
+
+extern const Card pcssCard;
+const Card pcssCard{
+    .id = "pcss",
+    .title = "Percentage-closer soft shadows",
+    .authors = "Fernando",
+    .year = 2005,
+    .venue = "SIGGRAPH sketches",
+    .idea = "Search for what blocks the light, take the penumbra's width from its mean depth by similar triangles, and "
+            "filter the comparisons over that width.",
+    .assumes = "Light, blocker and receiver are parallel, and all blockers of a point lie at one depth. One map, from the "
+               "light's centre.",
+    .fails = "Overlapping blockers at several depths give one wrong width; few taps leave bands or noise in large "
+             "penumbrae; what the centre of the light does not see casts nothing.",
+    .litTolerance = 1e-4,
+    .lidTolerance = 1e-4,
+    .make = [] { return std::unique_ptr<Technique>(new Pcss); },
+};
+
+} // namespace penumbra

@@ -1,0 +1,86 @@
+// SPDX-License-Identifier: MIT
+// The surfaces that receive shadows: eye depth, normals, and on request base colour and motion.
+#include "shared/view.glsl.h"
+#include "lib/octahedral.glsl"
+#include "draws.glsl"
+
+layout(std140, binding = 0) uniform Constants {
+    ViewBlock view;
+    mat4 lastClipFromWorld;
+};
+
+#ifdef VERTEX_SHADER
+out vec3 positionWorld;
+out vec3 normalWorld;
+#if defined(COLOUR) || defined(MASKED)
+out vec2 uv;
+flat out uint draw;
+#endif
+#ifdef MOTION
+out vec4 lastClip;
+out vec4 clip;
+#endif
+void main()
+{
+    mat4 worldFromModel = draws[drawIndex].worldFromModel;
+    vec4 world = worldFromModel * vec4(positionModel, 1.0);
+    positionWorld = world.xyz;
+    // Cofactors: normals stay normal under uneven and mirrored scale.
+    mat3 m = mat3(worldFromModel);
+    normalWorld = mat3(cross(m[1], m[2]), cross(m[2], m[0]), cross(m[0], m[1])) * normalModel;
+    gl_Position = view.clipFromWorld * world;
+#if defined(COLOUR) || defined(MASKED)
+    uv = uvModel;
+    draw = drawIndex;
+#endif
+#ifdef MOTION
+    clip = gl_Position;
+    lastClip = lastClipFromWorld * (draws[drawIndex].lastWorldFromModel * vec4(positionModel, 1.0));
+#endif
+}
+#endif
+
+#ifdef FRAGMENT_SHADER
+in vec3 positionWorld;
+in vec3 normalWorld;
+#if defined(COLOUR) || defined(MASKED)
+in vec2 uv;
+flat in uint draw;
+uniform sampler2D baseColourTexture;
+#endif
+layout(location = 0) out float depth;
+layout(location = 1) out vec4 normal;
+#ifdef COLOUR
+layout(location = COLOUR) out vec4 colour;
+#endif
+#ifdef MOTION
+in vec4 lastClip;
+in vec4 clip;
+layout(location = MOTION) out vec2 motion;
+#endif
+void main()
+{
+#if defined(COLOUR) || defined(MASKED)
+    vec4 base = texture(baseColourTexture, uv) * draws[draw].baseColour;
+#endif
+#ifdef MASKED
+    if (base.a < draws[draw].emissive_cutoff.w) discard;
+#endif
+    vec3 towardsEye = view.eyeWorld.xyz - positionWorld;
+    vec3 geometric = cross(dFdx(positionWorld), dFdy(positionWorld));
+    float area = dot(geometric, geometric);
+    geometric = area > 0.0 ? geometric * inversesqrt(area) : normalize(towardsEye); // needle triangles have no derivative
+    if (dot(geometric, towardsEye) < 0.0) geometric = -geometric;
+    float size = dot(normalWorld, normalWorld);
+    vec3 shading = size > 0.0 ? normalWorld * inversesqrt(size) : geometric;
+    if (dot(shading, geometric) < 0.0) shading = -shading;
+    normal = vec4(octahedralFromUnit(geometric), octahedralFromUnit(shading));
+    depth = 1.0 / gl_FragCoord.w; // clip w is the eye depth
+#ifdef COLOUR
+    colour = vec4(base.rgb, 1.0) + vec4(draws[draw].emissive_cutoff.xyz, 0.0);
+#endif
+#ifdef MOTION
+    motion = (lastClip.xy / lastClip.w - clip.xy / clip.w) * 0.5 * view.size.xy;
+#endif
+}
+#endif

@@ -1,0 +1,45 @@
+// SPDX-License-Identifier: MIT
+// Ambient light and the area light's diffuse reflection, no further than shadows need: the light acts as from its centre
+// (its share that a surface does not see is ψ), with the fall-off of a distance and, for rectangle and disk, of the
+// emitter's own cosine. 4 texture reads a pixel.
+#include "shared/view.glsl.h"
+#include "lib/octahedral.glsl"
+
+layout(local_size_x = 8, local_size_y = 8) in;
+
+layout(std140, binding = 0) uniform Constants {
+    ViewBlock view;
+    mat4 lightFromWorld;
+    vec4 colour_ambient; // the light's colour times its intensity, w = ambient
+    vec4 shape_reach;    // x = shape (2: directional), y = distance at which the intensity holds [m], zw = size [m]
+};
+uniform sampler2D depth;
+uniform sampler2D normal;
+uniform sampler2D colour;
+uniform sampler2D shadow;
+uniform writeonly image2D lit;
+
+const vec3 background = vec3(0.10, 0.11, 0.13);
+
+void main()
+{
+    ivec2 pixel = ivec2(gl_GlobalInvocationID.xy); // fetches and stores outside the picture do nothing
+    float d = texelFetch(depth, pixel, 0).x;
+    vec2 centre = vec2(pixel) + 0.5;
+    vec3 positionWorld = view.eyeWorld.xyz + d * (view.rayCorner.xyz + centre.x * view.rayDx.xyz + centre.y * view.rayDy.xyz);
+    vec3 n = mat3(lightFromWorld) * unitFromOctahedral(texelFetch(normal, pixel, 0).zw);
+    vec3 l = -(lightFromWorld * vec4(positionWorld, 1.0)).xyz;
+
+    // Half the light's size keeps the inverse square finite at the light itself.
+    float distance2 = dot(l, l) + 0.25 * dot(shape_reach.zw, shape_reach.zw);
+    vec3 direction = l * inversesqrt(max(dot(l, l), 1e-20));
+    float area = max(dot(n, direction), 0.0) * max(direction.z, 0.0) * (shape_reach.y * shape_reach.y) / distance2;
+    float irradiance = shape_reach.x == 2.0 ? max(n.z, 0.0) : area;
+
+    float psi = texelFetch(shadow, pixel, 0).x;
+    // Ambient light is a little stronger from above, so that what lies in full shadow keeps its shape.
+    float ambient = colour_ambient.w * (0.75 + 0.25 * dot(n, lightFromWorld[1].xyz));
+    vec3 base = texelFetch(colour, pixel, 0).rgb;
+    vec3 reflected = base * (ambient + colour_ambient.rgb * (irradiance * (1.0 - psi)));
+    imageStore(lit, pixel, vec4(d > 0.0 ? reflected : background, 1.0));
+}

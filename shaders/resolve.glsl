@@ -1,0 +1,76 @@
+// SPDX-License-Identifier: MIT
+// The front half of every pass that turns a geometry buffer and a shadow map into ψ: which surface a pixel shows, where
+// it falls on the map, and how far a bias moves it. A technique's shader includes this and writes main().
+#include "shared/view.glsl.h"
+#include "lib/octahedral.glsl"
+#include "lib/light_space.glsl"
+
+layout(local_size_x = 8, local_size_y = 8) in;
+
+layout(std140, binding = 0) uniform Constants {
+    ViewBlock view;
+    LightViewBlock lightView;
+#ifdef TABLE
+    vec4 table[TABLE]; // a filter's own
+#endif
+};
+uniform sampler2D depth;  // eye depth [m], 0: no surface
+uniform sampler2D normal; // xy geometric normal, world, octahedral
+uniform writeonly image2D shadow;
+
+const bool directional = DIRECTIONAL != 0; // a define: software renderers run both sides of a branch
+
+// A surface point in the coordinates of the shadow map.
+struct Receiver {
+    ivec2 pixel;
+    float known;        // ψ where it is known without a look at the map, else −1
+    vec3 positionLight; // [m]
+    vec3 normalLight;   // unit, geometric, towards the viewer
+    float facing;       // n·(P − S) [m], or n·l for a directional light; see lib/light_space.glsl
+    float d;            // axial depth [m]
+    vec2 reference;     // place on the reference plane [m]
+};
+
+// ψ = 1 where the light's every point is below the surface's horizon.
+bool lightBelowHorizon(vec3 positionLight, vec3 n)
+{
+    vec2 s = lightView.light.xy;
+    float spread = lightView.light.w != 0.0 ? length(n.xy * s) : dot(abs(n.xy), s); // disk or rectangle
+    return directional ? n.z + spread <= 0.0 : spread - dot(n, positionLight) <= 0.0;
+}
+
+// The pixel's receiver, moved along its normal by `normalOffset` texels. ψ is known to be 0 without a surface and behind
+// the light, 1 with the light below the horizon. There are no early returns here: a software renderer runs both sides of
+// every branch, and only loops of no rounds save it work. Fetches and stores outside the picture do nothing.
+Receiver findReceiver(float normalOffset)
+{
+    Receiver r;
+    r.pixel = ivec2(gl_GlobalInvocationID.xy);
+    float eyeDepth = texelFetch(depth, r.pixel, 0).x;
+    vec2 centre = vec2(r.pixel) + 0.5;
+    vec3 ray = view.rayCorner.xyz + centre.x * view.rayDx.xyz + centre.y * view.rayDy.xyz;
+    vec3 positionWorld = view.eyeWorld.xyz + eyeDepth * ray;
+    vec3 normalWorld = unitFromOctahedral(texelFetch(normal, r.pixel, 0).xy);
+
+    r.positionLight = (lightView.lightFromWorld * vec4(positionWorld, 1.0)).xyz;
+    r.normalLight = mat3(lightView.lightFromWorld) * normalWorld;
+    bool below = lightBelowHorizon(r.positionLight, r.normalLight);
+
+    vec2 s = lightView.sample_reference.xy;
+    float f = lightView.sample_reference.z;
+    float texel = 2.0 * lightView.window.z / lightView.light.z; // on the reference plane [m]
+    // (R + ½) √2 w sin θ removes acne from planes at every angle and never diverges.
+    vec3 towardsLight = normalize(directional ? vec3(s, 1.0) : vec3(s, 0.0) - r.positionLight);
+    float cosine = dot(r.normalLight, towardsLight);
+    float texelHere = directional ? texel : texel * max(-r.positionLight.z, 0.0) / f;
+    r.positionLight += r.normalLight * (normalOffset * texelHere * sqrt(max(1.0 - cosine * cosine, 0.0)));
+
+    bool behind = !directional && r.positionLight.z >= 0.0;
+    r.d = behind ? f : -r.positionLight.z;
+    r.reference = referenceFromLight(vec3(r.positionLight.xy, -r.d), s, f, directional);
+    r.facing = directional ? dot(r.normalLight, vec3(s, 1.0)) : dot(r.normalLight, r.positionLight - vec3(s, 0.0));
+    r.known = eyeDepth <= 0.0 || (behind && !below) ? 0.0 : below ? 1.0 : -1.0;
+    return r;
+}
+
+void writeShadow(Receiver r, float psi) { imageStore(shadow, r.pixel, vec4(r.known >= 0.0 ? r.known : psi)); }

@@ -1,0 +1,83 @@
+// SPDX-License-Identifier: MIT
+// Lookups in a depth map, texel by texel, each compared with the depth that the receiver's own plane has at that texel's
+// centre. On a plane the comparison is then exact at any slope and any kernel size, and the biases are left with rounding
+// and curvature.
+#include "resolve.glsl"
+
+uniform sampler2D shadowMap;
+
+// Axial depth [m] of the map depth z.
+float axialDepth(float z) { return z / lightView.range.z + lightView.range.x; }
+
+// What a lookup needs of a receiver, in texels and map depth.
+struct Lookup {
+    vec2 texel;     // the receiver's place on the map [texels]
+    vec2 gradient;  // of the plane; see planeGradient(), per texel
+    float compared; // the receiver's depth in the units of the comparison
+    float offset;   // added to a stored depth before the comparison
+    float floor_w;  // area light: the least 1 + g·δ, where the plane reaches the far end
+};
+
+// `constantBias` in map depth, `slopeTexels` in texels of slope, `withPlane` false compares every texel with the
+// receiver's own depth.
+Lookup makeLookup(Receiver r, float constantBias, float slopeTexels, bool withPlane)
+{
+    Lookup l;
+    float size = lightView.light.z;
+    vec2 metresPerTexel = 2.0 * lightView.window.zw / size;
+    l.texel = ((r.reference - lightView.window.xy) / (2.0 * lightView.window.zw) + 0.5) * size;
+    // Where the sample point of the light grazes or lies below the surface, its plane says nothing.
+    bool lit = directional ? r.facing > 1e-4 : r.facing < -1e-4 * r.d;
+    vec2 g = lit ? planeGradient(r.normalLight, r.facing, r.d, lightView.sample_reference.z, directional) : vec2(0.0);
+    g *= metresPerTexel;
+    float slope = abs(g.x) + abs(g.y);
+    float perMetre = lightView.range.z;
+    if (directional) {
+        g *= perMetre;
+        l.compared = (r.d - lightView.range.x) * perMetre;
+        l.offset = constantBias + slopeTexels * slope * perMetre;
+        l.floor_w = 0.0;
+    } else {
+        l.compared = r.d * perMetre;
+        l.offset = lightView.range.x * perMetre + constantBias + slopeTexels * slope * r.d * perMetre;
+        l.floor_w = r.d / lightView.range.y;
+    }
+    l.gradient = withPlane ? g : vec2(0.0);
+    return l;
+}
+
+// 1 if the caster stored as z at an offset of δ texels lies in front of the receiver's plane.
+float blocks(Lookup l, float z, vec2 delta)
+{
+    float change = dot(l.gradient, delta);
+    float stored = z + l.offset;
+    if (directional) return z < 1.0 && stored < l.compared + change ? 1.0 : 0.0;
+    return z < 1.0 && stored * max(1.0 + change, l.floor_w) < l.compared ? 1.0 : 0.0;
+}
+
+// The stored depth of the texel at `place` [texels]; outside the map its empty border answers.
+float storedDepth(ivec2 place)
+{
+    return texelFetch(shadowMap, clamp(place, ivec2(0), ivec2(int(lightView.light.z) - 1)), 0).x;
+}
+
+// Of the texel that contains `place` [texels].
+float blocksAt(Lookup l, vec2 place)
+{
+    vec2 corner = floor(place);
+    return blocks(l, storedDepth(ivec2(corner)), corner + 0.5 - l.texel);
+}
+
+// Bilinear over the comparisons of the four texels around `place`, what a comparing sampler does.
+float blocksBilinear(Lookup l, vec2 place)
+{
+    vec2 corner = floor(place - 0.5);
+    vec2 f = place - 0.5 - corner;
+    ivec2 c = ivec2(corner);
+    vec2 delta = corner + 0.5 - l.texel;
+    float b00 = blocks(l, storedDepth(c), delta);
+    float b10 = blocks(l, storedDepth(c + ivec2(1, 0)), delta + vec2(1.0, 0.0));
+    float b01 = blocks(l, storedDepth(c + ivec2(0, 1)), delta + vec2(0.0, 1.0));
+    float b11 = blocks(l, storedDepth(c + ivec2(1, 1)), delta + vec2(1.0, 1.0));
+    return mix(mix(b00, b10, f.x), mix(b01, b11, f.x), f.y);
+}

@@ -1,0 +1,58 @@
+// SPDX-License-Identifier: MIT
+// Depth as seen from a point of the light, linear (shared/view.glsl.h).
+#include "shared/view.glsl.h"
+#include "draws.glsl"
+
+layout(std140, binding = 0) uniform Constants { LightViewBlock lightView; };
+
+#ifdef VERTEX_SHADER
+#if defined(RADIAL)
+out vec3 fromLight; // [m]
+#elif defined(LINEAR_DEPTH)
+out float z; // linear in the position, so interpolation keeps it exact
+#endif
+#ifdef MASKED
+out vec2 uv;
+flat out vec2 alpha_cutoff;
+#endif
+void main()
+{
+    vec4 positionWorld = draws[drawIndex].worldFromModel * vec4(positionModel, 1.0);
+#if defined(RADIAL)
+    fromLight = (lightView.lightFromWorld * positionWorld).xyz - vec3(lightView.sample_reference.xy, 0.0);
+#elif defined(LINEAR_DEPTH)
+    vec4 lightZ = vec4(lightView.lightFromWorld[0].z, lightView.lightFromWorld[1].z, lightView.lightFromWorld[2].z, lightView.lightFromWorld[3].z);
+    z = (-dot(lightZ, positionWorld) - lightView.range.x) * lightView.range.z;
+#endif
+    gl_Position = lightView.clipFromWorld * positionWorld;
+#ifdef MASKED
+    uv = uvModel;
+    alpha_cutoff = vec2(draws[drawIndex].baseColour.a, draws[drawIndex].emissive_cutoff.w);
+#endif
+}
+#endif
+
+#ifdef FRAGMENT_SHADER
+#if defined(RADIAL)
+in vec3 fromLight;
+#elif defined(LINEAR_DEPTH)
+in float z;
+#endif
+#ifdef MASKED
+in vec2 uv;
+flat in vec2 alpha_cutoff;
+uniform sampler2D baseColourTexture;
+#endif
+void main()
+{
+#ifdef MASKED
+    if (texture(baseColourTexture, uv).a * alpha_cutoff.x < alpha_cutoff.y) discard;
+#endif
+    // Of perspective maps and radial metrics the rasteriser's own depth is not what is stored.
+#if defined(RADIAL)
+    gl_FragDepth = clamp((length(fromLight) - lightView.range.x) * lightView.range.z, 0.0, 1.0);
+#elif defined(LINEAR_DEPTH)
+    gl_FragDepth = clamp(z, 0.0, 1.0);
+#endif
+}
+#endif

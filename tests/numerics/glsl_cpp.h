@@ -1,0 +1,77 @@
+// SPDX-License-Identifier: MIT
+// shaders/lib as C++: the very text that the GPU runs, once in float (does the arithmetic survive?) and once in double
+// (is the formula right?), as namespaces f32 and f64. Literals keep their suffix f in both, so that both copies share the
+// constants that the GPU has and their difference is the rounding of the arithmetic alone.
+//
+// Redefining a keyword is outside the letter of the standard; every header is included before, and it is undone below.
+#pragma once
+
+#include <glm/glm.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <concepts>
+#include <cstdint>
+#include <type_traits>
+
+#pragma GCC diagnostic push
+#pragma GCC diagnostic ignored "-Wunused-function"
+
+namespace {
+
+namespace builtins {
+template <class S, class T>
+concept Foreign = std::is_arithmetic_v<S> && !std::same_as<S, T>;
+template <class A, class B>
+concept Numbers = std::is_arithmetic_v<A> && std::is_arithmetic_v<B>;
+
+// GLSL lets a float literal meet any number; these bridge the double copy.
+template <int N, class T, Foreign<T> S> auto operator*(glm::vec<N, T> v, S s) { return v * T(s); }
+template <int N, class T, Foreign<T> S> auto operator*(S s, glm::vec<N, T> v) { return T(s) * v; }
+template <int N, class T, Foreign<T> S> auto operator+(glm::vec<N, T> v, S s) { return v + T(s); }
+template <int N, class T, Foreign<T> S> auto operator-(glm::vec<N, T> v, S s) { return v - T(s); }
+template <class A, class B> requires Numbers<A, B> auto max(A a, B b) {
+    using T = std::common_type_t<A, B>;
+    return T(a) < T(b) ? T(b) : T(a);
+}
+template <class A, class B> requires Numbers<A, B> auto min(A a, B b) {
+    using T = std::common_type_t<A, B>;
+    return T(b) < T(a) ? T(b) : T(a);
+}
+using glm::abs;
+using glm::cos;
+using glm::dot;
+using glm::floor;
+using glm::fract;
+using glm::length;
+using glm::normalize;
+using glm::sin;
+using glm::sqrt;
+using uint = uint32_t;
+} // namespace builtins
+
+namespace f32 {
+using namespace builtins;
+using vec2 = glm::vec<2, float>;
+using vec3 = glm::vec<3, float>;
+using vec4 = glm::vec<4, float>;
+#include "shaders/lib/light_space.glsl"
+#include "shaders/lib/octahedral.glsl"
+#include "shaders/lib/sampling.glsl"
+} // namespace f32
+
+#define float double
+namespace f64 {
+using namespace builtins;
+using vec2 = glm::vec<2, double>;
+using vec3 = glm::vec<3, double>;
+using vec4 = glm::vec<4, double>;
+#include "shaders/lib/light_space.glsl"
+#include "shaders/lib/octahedral.glsl"
+#include "shaders/lib/sampling.glsl"
+} // namespace f64
+#undef float
+
+} // namespace
+
+#pragma GCC diagnostic pop

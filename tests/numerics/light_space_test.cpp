@@ -1,0 +1,153 @@
+// SPDX-License-Identifier: MIT
+// The mathematics of shadow maps on the reference plane, against geometry done the long way.
+#include "tests/catch.h"
+#include "tests/numerics/glsl_cpp.h"
+
+#include <random>
+
+namespace {
+
+using glm::dvec2;
+using glm::dvec3;
+
+// Where the ray from the light's point (s, 0) through P meets the plane z = −f.
+dvec2 throughPlane(dvec3 p, dvec2 s, double f) {
+    const dvec3 from(s, 0), direction = p - from;
+    const dvec3 hit = from + direction * (-f / direction.z);
+    return {hit.x, hit.y};
+}
+
+} // namespace
+
+TEST_CASE("a point's place on the reference plane is where its ray from the light meets it") {
+    std::mt19937 random(1);
+    std::uniform_real_distribution<double> u(-3, 3), depth(0.1, 20);
+    for (int i = 0; i < 1000; ++i) {
+        const dvec3 p(u(random), u(random), -depth(random));
+        const dvec2 s(u(random), u(random));
+        const double f = depth(random);
+        const dvec2 area = f64::referenceFromLight(p, s, f, false);
+        CHECK(glm::distance(area, throughPlane(p, s, f)) == Approx(0).margin(1e-9));
+        // Directional: along the direction (s, 1) towards the light.
+        const dvec3 onPlane = p + dvec3(s, 1.0) * (-f - p.z);
+        CHECK(glm::distance(f64::referenceFromLight(p, s, f, true), dvec2(onPlane.x, onPlane.y)) == Approx(0).margin(1e-9));
+        const dvec2 single = dvec2(f32::referenceFromLight(glm::vec3(p), glm::vec2(s), float(f), false));
+        CHECK(glm::distance(single, area) <= 1e-5 * (1 + glm::length(area)));
+    }
+}
+
+TEST_CASE("penumbra and search region have the golden sizes") {
+    // algorithms of PCSS on the near plane n: search r (z_r − n) / (z_r W), filter q n / (z_r W), both in uv. On a
+    // reference plane f the window is W f / n wide, so uv = size / (W f / n).
+    struct Row {
+        double r, n, fov, z_r, z_b, searchUv, widthOnReceiver, filterUv;
+    };
+    for (const Row& row : {Row{0.5, 1, 60, 10, 4, 0.389711431703, 0.75, 0.0649519052838},
+                           Row{0.5, 1, 60, 10, 9, 0.389711431703, 0.0555555555556, 0.00481125224325},
+                           Row{0.25, 0.1, 90, 5, 2.5, 1.225, 0.25, 0.025}, Row{1, 2, 45, 20, 5, 0.543198051534, 3, 0.181066017178}}) {
+        const double f = 7, window = 2 * std::tan(glm::radians(row.fov / 2)) * f;
+        CHECK(f64::penumbraHalfSize(dvec2(row.r), row.z_r, row.n, f, false).x / window == Approx(row.searchUv).epsilon(1e-9));
+        const double filter = f64::penumbraHalfSize(dvec2(row.r), row.z_r, row.z_b, f, false).x;
+        CHECK(filter / window == Approx(row.filterUv).epsilon(1e-9));
+        CHECK(filter * row.z_r / f == Approx(row.widthOnReceiver).epsilon(1e-9));
+    }
+    // The sun, 10 m below what casts.
+    const double sun = std::tan(glm::radians(0.2665));
+    CHECK(f64::penumbraHalfSize(dvec2(sun), 30.0, 20.0, 7.0, true).x == Approx(0.046513359999).epsilon(1e-9));
+    // Nothing behind the receiver widens it.
+    CHECK(f64::penumbraHalfSize(dvec2(1), 5.0, 6.0, 7.0, false).x == 0);
+}
+
+TEST_CASE("the box filter of the penumbra's size is the exact share of a half plane's square light") {
+    // Edge at x = 0, height h over the receiver, light of half width a at height H: V = (a + x (H − h) / h) / 2a.
+    const double a = 0.5, H = 10, h = 6;
+    for (double x = -0.9; x < 0.9; x += 0.05) {
+        const double d_r = H, d_b = H - h, f = 3;
+        const double half = f64::penumbraHalfSize(dvec2(a), d_r, d_b, f, false).x, place = x * f / d_r;
+        const double filtered = std::clamp((place + half) / (2 * half), 0.0, 1.0); // lit where the filter reaches beyond 0
+        CHECK(filtered == Approx(std::clamp((a + x * (H - h) / h) / (2 * a), 0.0, 1.0)).margin(1e-12));
+    }
+}
+
+TEST_CASE("the receiver's plane has the depth that a ray to it measures, at any tilt") {
+    std::mt19937 random(2);
+    std::uniform_real_distribution<double> u(-1, 1), depth(1, 20);
+    int met = 0;
+    for (int i = 0; i < 4000; ++i) {
+        const bool directional = i % 2 == 0;
+        const dvec3 p(4 * u(random), 4 * u(random), -depth(random));
+        const dvec2 s(u(random), u(random));
+        const double f = depth(random), farthest = 1000;
+        const dvec3 n = glm::normalize(dvec3(u(random), u(random), std::abs(u(random)) + 0.05));
+        const dvec3 light(s, directional ? 1.0 : 0.0);
+        const double facing = directional ? glm::dot(n, light) : glm::dot(n, p - light);
+        if (directional ? facing < 0.02 : facing > -0.02) continue;
+        const dvec2 delta(u(random), u(random));
+        const double d_r = -p.z;
+        const dvec2 g = f64::planeGradient(n, facing, d_r, f, directional);
+        const double depthThere = f64::planeDepth(g, delta, d_r, farthest, directional);
+
+        const dvec2 place = f64::referenceFromLight(p, s, f, directional) + delta;
+        const dvec3 from = directional ? dvec3(place, -f) : dvec3(s, 0);
+        const dvec3 along = directional ? dvec3(s, 1.0) : dvec3(place, -f) - from;
+        const double t = glm::dot(n, p - from) / glm::dot(n, along);
+        const double expected = -(from + t * along).z;
+        CAPTURE(directional, p.x, p.y, p.z, n.x, n.y, n.z, delta.x, delta.y);
+        if (!directional && t <= 0) {
+            CHECK(depthThere == farthest); // the ray leaves the plane behind
+        } else {
+            ++met;
+            CHECK(depthThere == Approx(std::min(expected, farthest)).epsilon(1e-8));
+            const double single = f32::planeDepth(
+                f32::planeGradient(glm::vec3(n), float(facing), float(d_r), float(f), directional), glm::vec2(delta),
+                float(d_r), float(farthest), directional);
+            if (depthThere > 0.5 && depthThere < 50) CHECK(single == Approx(depthThere).epsilon(2e-4));
+        }
+    }
+    CHECK(met > 1000);
+}
+
+TEST_CASE("octahedral normals come back") {
+    std::mt19937 random(3);
+    std::normal_distribution<double> gauss;
+    double worst = 0;
+    for (int i = 0; i < 20000; ++i) {
+        dvec3 v = glm::normalize(dvec3(gauss(random), gauss(random), gauss(random)));
+        if (i % 7 == 0) v = glm::normalize(dvec3(i % 14 ? 0 : v.x, v.y, i % 21 ? v.z : 0) + 1e-12);
+        const dvec2 p = f64::octahedralFromUnit(v);
+        CHECK((std::abs(p.x) <= 1 + 1e-12 && std::abs(p.y) <= 1 + 1e-12));
+        worst = std::max(worst, glm::distance(f64::unitFromOctahedral(p), v));
+        // As RGBA16_SNORM stores it: within a 25000th of a radian.
+        const dvec2 stored = glm::round(p * 32767.0) / 32767.0;
+        CHECK(glm::distance(f64::unitFromOctahedral(stored), v) < 8e-5);
+    }
+    CHECK(worst < 1e-12);
+}
+
+TEST_CASE("filter points are even: strata, density and range") {
+    for (const int n : {1, 4, 16, 64}) {
+        std::vector<int> x(static_cast<size_t>(n)), y(static_cast<size_t>(n));
+        for (int i = 0; i < n; ++i) {
+            const glm::vec2 p = f32::hammersley(i, n);
+            REQUIRE((p.x >= 0 && p.x < 1 && p.y >= 0 && p.y < 1));
+            ++x[static_cast<size_t>(p.x * static_cast<float>(n))];
+            ++y[static_cast<size_t>(p.y * static_cast<float>(n))];
+        }
+        CHECK(std::all_of(x.begin(), x.end(), [](int c) { return c == 1; }));
+        CHECK(std::all_of(y.begin(), y.end(), [](int c) { return c == 1; }));
+    }
+    // Vogel's spiral: as many points within radius r as r² says, to a point.
+    for (const int n : {1, 5, 16, 64})
+        for (int i = 0; i < n; ++i)
+            CHECK(glm::length(f64::vogelDisk(i, n, 0.3)) == Approx(std::sqrt((i + 0.5) / n)).epsilon(1e-6));
+    // Halves of the square become halves of the disk of equal area.
+    int left = 0, inner = 0;
+    for (int i = 0; i < 10000; ++i) {
+        const glm::dvec2 p = f64::concentricDisk(f64::hammersley(i, 10000));
+        REQUIRE(glm::length(p) <= 1 + 1e-6);
+        left += p.x < 0;
+        inner += glm::length(p) < std::sqrt(0.5);
+    }
+    CHECK(std::abs(left - 5000) < 30);
+    CHECK(std::abs(inner - 5000) < 30);
+}

@@ -1,0 +1,103 @@
+// SPDX-License-Identifier: MIT
+#include "tests/support/scenes.h"
+
+#include <cmath>
+
+namespace penumbra::test {
+namespace {
+
+HeadlessContext& context() {
+    static HeadlessContext made;
+    return made;
+}
+
+} // namespace
+
+Renderer& renderer() {
+    context();
+    static Renderer made;
+    return made;
+}
+
+const std::vector<std::string>& driverMessages() { return context().messages(); }
+
+SceneBuilder& SceneBuilder::triangle(glm::vec3 a, glm::vec3 b, glm::vec3 c) {
+    Primitive primitive{.firstIndex = static_cast<uint32_t>(scene_.indices.size()),
+                        .indexCount = 3,
+                        .firstVertex = static_cast<uint32_t>(scene_.positions.size()),
+                        .vertexCount = 3};
+    const glm::vec3 cross = glm::cross(b - a, c - a);
+    const float length = glm::length(cross);
+    uint32_t index = 0;
+    for (const glm::vec3 p : {a, b, c}) {
+        scene_.positions.push_back(p);
+        scene_.normals.push_back(length > 0 ? cross / length : glm::vec3(0, 1, 0));
+        scene_.uvs.push_back({});
+        scene_.indices.push_back(index++);
+        primitive.bounds.add(p);
+    }
+    Node node;
+    node.mesh = static_cast<int>(scene_.meshes.size());
+    scene_.meshes.push_back({"triangle", {primitive}});
+    scene_.nodes.push_back(node);
+    return *this;
+}
+
+SceneBuilder& SceneBuilder::quad(glm::vec3 a, glm::vec3 b, glm::vec3 c, glm::vec3 d) {
+    return triangle(a, b, c).triangle(a, c, d);
+}
+
+SceneBuilder& SceneBuilder::floor(float h, float tiltDegrees) {
+    const float c = std::cos(glm::radians(tiltDegrees)), s = std::sin(glm::radians(tiltDegrees));
+    const auto at = [&](float x, float z) { return glm::vec3(x, -s * z, c * z); };
+    return quad(at(-h, h), at(h, h), at(h, -h), at(-h, -h));
+}
+
+SceneBuilder& SceneBuilder::box(glm::vec3 a, glm::vec3 b) {
+    quad({a.x, b.y, b.z}, {b.x, b.y, b.z}, {b.x, b.y, a.z}, {a.x, b.y, a.z}); // top
+    quad({a.x, a.y, a.z}, {b.x, a.y, a.z}, {b.x, a.y, b.z}, {a.x, a.y, b.z}); // bottom
+    quad({a.x, a.y, b.z}, {b.x, a.y, b.z}, {b.x, b.y, b.z}, {a.x, b.y, b.z});
+    quad({b.x, a.y, a.z}, {a.x, a.y, a.z}, {a.x, b.y, a.z}, {b.x, b.y, a.z});
+    quad({b.x, a.y, b.z}, {b.x, a.y, a.z}, {b.x, b.y, a.z}, {b.x, b.y, b.z});
+    return quad({a.x, a.y, a.z}, {a.x, a.y, b.z}, {a.x, b.y, b.z}, {a.x, b.y, a.z});
+}
+
+std::shared_ptr<const Scene> SceneBuilder::build() const {
+    auto scene = std::make_shared<Scene>(scene_);
+    scene->materials.push_back({.doubleSided = true});
+    return scene;
+}
+
+Session session(std::shared_ptr<const Scene> scene, std::string_view technique) {
+    Session s;
+    s.scene = std::move(scene);
+    s.camera = {.eye = {3, 2.5f, 3}, .target = {0, 0, 0}};
+    s.light = {.position = {0, 4, 0}, .target = {0, 0, 0}, .size = {1, 1}};
+    s.display.show = Show::Shadow;
+    s.size = {64, 48};
+    s.techniques.choose(technique);
+    return s;
+}
+
+glm::vec3 ShadowImage::positionWorld(int x, int y) const {
+    const float px = static_cast<float>(x) + 0.5f, py = static_cast<float>(psi.height - 1 - y) + 0.5f;
+    return view.eyeWorld + depth.values[index(x, y)] * (view.rayCorner + px * view.rayDx + py * view.rayDy);
+}
+
+double ShadowImage::meanOverSurface() const {
+    double sum = 0, count = 0;
+    for (int y = 0; y < psi.height; ++y)
+        for (int x = 0; x < psi.width; ++x)
+            if (surface(x, y)) sum += at(x, y), ++count;
+    return sum / count;
+}
+
+ShadowImage draw(const Session& session) {
+    Renderer& r = renderer();
+    r.reset();
+    r.render(session);
+    const Image depth = *r.flow().find("scene.depth");
+    return {r.read(r.shadow()), r.read(depth), sessionView(session, r.state().bounds())};
+}
+
+} // namespace penumbra::test

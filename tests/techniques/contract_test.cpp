@@ -1,0 +1,208 @@
+// SPDX-License-Identifier: MIT
+// What is true of every technique of the catalogue.
+#include "renderer/core/technique.h"
+#include "tests/catch.h"
+#include "tests/support/scenes.h"
+
+#include <cmath>
+#include <random>
+
+using namespace penumbra;
+using namespace penumbra::test;
+
+namespace {
+
+constexpr double largestMap = 1024;
+
+std::shared_ptr<const Scene> emptyFloor(float tilt) { return SceneBuilder().floor(3, tilt).build(); }
+
+// A slab that no ray from the light to the floor can pass.
+std::shared_ptr<const Scene> lidOverFloor() { return SceneBuilder().floor(2).box({-6, 2.2f, -6}, {6, 2.4f, 6}).build(); }
+
+std::shared_ptr<const Scene> boxesOverFloor() {
+    return SceneBuilder().floor(3).box({-1, 0, -1}, {0, 1, 0}).box({0.2f, 0.8f, 0.2f}, {0.9f, 1.0f, 1.4f}).build();
+}
+
+// Finite and in [0, 1] everywhere, and silence from the driver.
+void checkSane(const Session& s) {
+    const ShadowImage image = draw(s);
+    double low = 1, high = 0;
+    bool finite = true;
+    for (const float psi : image.psi.values) {
+        finite = finite && std::isfinite(psi);
+        low = std::min<double>(low, psi);
+        high = std::max<double>(high, psi);
+    }
+    CHECK(finite);
+    CHECK(low >= 0);
+    CHECK(high <= 1);
+    CHECK(driverMessages().empty());
+}
+
+bool tooLarge(const Parameter& p, double value) { return p.spec().id == "map-size" && value > largestMap; }
+
+} // namespace
+
+TEST_CASE("the empty floor is lit, level and at 45 degrees") {
+    for (const Card* card : catalogue())
+        for (const float tilt : {0.0f, 45.0f})
+            for (const LightShape shape : {LightShape::Rectangle, LightShape::Disk, LightShape::Directional}) {
+                Session s = session(emptyFloor(tilt), card->id);
+                s.light.shape = shape;
+                if (shape == LightShape::Directional) s.light.size = {2, 0};
+                CAPTURE(card->id, tilt, int(shape));
+                const double mean = draw(s).meanOverSurface();
+                CHECK(mean <= card->litTolerance);
+            }
+    CHECK(driverMessages().empty());
+}
+
+TEST_CASE("a closed lid makes the floor dark") {
+    for (const Card* card : catalogue())
+        for (const LightShape shape : {LightShape::Rectangle, LightShape::Disk, LightShape::Directional}) {
+            Session s = session(lidOverFloor(), card->id);
+            s.camera = {.eye = {1.5f, 1.2f, 1.5f}, .target = {0, 0, 0}, .fovY = 30};
+            s.light.shape = shape;
+            if (shape == LightShape::Directional) s.light.size = {2, 0};
+            CAPTURE(card->id, int(shape));
+            CHECK(1 - draw(s).meanOverSurface() <= card->lidTolerance);
+        }
+    CHECK(driverMessages().empty());
+}
+
+TEST_CASE("a surface turned away from the whole light is dark without any map") {
+    for (const Card* card : catalogue()) {
+        Session s = session(SceneBuilder().floor(1).build(), card->id);
+        s.camera.eye = {2, -2, 2}; // sees the floor's lower side, which the light above does not reach
+        CAPTURE(card->id);
+        CHECK(draw(s).meanOverSurface() == 1);
+    }
+}
+
+TEST_CASE("every parameter at its minimum, default and maximum gives a finite ψ in [0, 1]") {
+    for (const Card* card : catalogue()) {
+        Session s = session(boxesOverFloor(), card->id);
+        for (Parameter* p : s.techniques.parameters().all()) {
+            for (const double value : {p->spec().min, p->defaultValue(), std::min(p->spec().max, tooLarge(*p, p->spec().max) ? largestMap : p->spec().max)}) {
+                CAPTURE(p->qualifiedName(), value);
+                p->set(p->nearest(value));
+                checkSane(s);
+            }
+            p->reset();
+        }
+    }
+}
+
+TEST_CASE("random settings give a finite ψ in [0, 1]") {
+    std::mt19937 random(7);
+    std::uniform_real_distribution<double> unit(0, 1);
+    for (const Card* card : catalogue()) {
+        Session s = session(boxesOverFloor(), card->id);
+        for (int round = 0; round < 12; ++round) {
+            for (Parameter* p : s.techniques.parameters().all()) {
+                const double max = tooLarge(*p, p->spec().max) ? largestMap : p->spec().max;
+                p->set(p->nearest(p->spec().min + unit(random) * (max - p->spec().min)));
+            }
+            s.light.shape = static_cast<LightShape>(round % 3);
+            s.light.size = glm::vec2(static_cast<float>(std::pow(10, 4 * unit(random) - 3)));
+            CAPTURE(card->id, round);
+            checkSane(s);
+        }
+    }
+}
+
+TEST_CASE("extreme scenes, lights and views give a finite ψ in [0, 1]") {
+    for (const Card* card : catalogue()) {
+        CAPTURE(card->id);
+        const auto with = [&](std::shared_ptr<const Scene> scene, auto&& change) {
+            for (const LightShape shape : {LightShape::Rectangle, LightShape::Disk, LightShape::Directional}) {
+                Session s = session(scene, card->id);
+                s.light.shape = shape;
+                change(s);
+                checkSane(s);
+            }
+        };
+        SECTION(std::string(card->id) + ": light of no size") { with(boxesOverFloor(), [](Session& s) { s.light.size = {0, 0}; }); }
+        SECTION(std::string(card->id) + ": huge light") { with(boxesOverFloor(), [](Session& s) { s.light.size = {170, 170}; }); }
+        SECTION(std::string(card->id) + ": light inside a box") {
+            with(boxesOverFloor(), [](Session& s) { s.light.position = {-0.5f, 0.5f, -0.5f}; });
+        }
+        SECTION(std::string(card->id) + ": light on the floor") { with(boxesOverFloor(), [](Session& s) { s.light.position = {1, 0, 1}; }); }
+        SECTION(std::string(card->id) + ": light at its own target") { with(boxesOverFloor(), [](Session& s) { s.light.position = s.light.target; }); }
+        SECTION(std::string(card->id) + ": everything behind the light") {
+            with(boxesOverFloor(), [](Session& s) { s.light.target = {0, 9, 0}; });
+        }
+        SECTION(std::string(card->id) + ": depths from 1 mm to 1 km") {
+            const auto scene = SceneBuilder().floor(1000).box({-1e-3f, 3.998f, -1e-3f}, {1e-3f, 3.999f, 1e-3f}).build();
+            with(scene, [](Session&) {});
+        }
+        SECTION(std::string(card->id) + ": 6 mm wide") {
+            const auto scene = SceneBuilder().floor(3e-3f).box({-1e-3f, 0, -1e-3f}, {0, 1e-3f, 0}).build();
+            with(scene, [](Session& s) {
+                s.camera = {.eye = {3e-3f, 3e-3f, 3e-3f}};
+                s.light.position = {0, 6e-3f, 0};
+                s.light.size = {1e-3f, 1e-3f};
+            });
+        }
+        SECTION(std::string(card->id) + ": 2 km wide") {
+            const auto scene = SceneBuilder().floor(1000).box({-300, 0, -300}, {0, 300, 0}).build();
+            with(scene, [](Session& s) {
+                s.camera = {.eye = {900, 900, 900}};
+                s.light.position = {0, 2000, 0};
+                if (s.light.shape != LightShape::Directional) s.light.size = {300, 300};
+            });
+        }
+        SECTION(std::string(card->id) + ": degenerate triangles") {
+            SceneBuilder builder;
+            builder.floor(3).triangle({0, 1, 0}, {0, 1, 0}, {0, 1, 0}).triangle({0, 1, 0}, {1, 1, 0}, {2, 1, 0});
+            builder.triangle({0, 1, 0}, {1, 1, 0}, {0.5f, 1, 1e-20f});
+            with(builder.build(), [](Session&) {});
+        }
+        SECTION(std::string(card->id) + ": one pixel") { with(boxesOverFloor(), [](Session& s) { s.size = {1, 1}; }); }
+        SECTION(std::string(card->id) + ": odd picture") { with(boxesOverFloor(), [](Session& s) { s.size = {37, 23}; }); }
+        SECTION(std::string(card->id) + ": empty scene") { with(SceneBuilder().build(), [](Session&) {}); }
+        SECTION(std::string(card->id) + ": empty scene with ground") { with(SceneBuilder().build(), [](Session& s) { s.ground = true; }); }
+        SECTION(std::string(card->id) + ": eye inside a box") { with(boxesOverFloor(), [](Session& s) { s.camera.eye = {-0.5f, 0.5f, -0.5f}; }); }
+    }
+}
+
+TEST_CASE("the smallest map works") {
+    for (const Card* card : catalogue()) {
+        Session s = session(boxesOverFloor(), card->id);
+        Parameter* size = s.techniques.parameters().find("map-size");
+        if (!size) continue;
+        size->set(size->spec().min);
+        CAPTURE(card->id);
+        checkSane(s);
+    }
+}
+
+TEST_CASE("the largest map works, or is refused with its name and size") {
+    for (const Card* card : catalogue()) {
+        Session s = session(boxesOverFloor(), card->id);
+        Parameter* size = s.techniques.parameters().find("map-size");
+        if (!size) continue;
+        size->set(size->spec().max);
+        s.size = {8, 8};
+        CAPTURE(card->id);
+        s.textureLimit = 256 << 20;
+        CHECK_THROWS_WITH(renderer().render(s), contains("shadow-map 16384x16384 DEPTH32F = 1024 MiB"));
+        CHECK_FALSE(renderer().hasFrame());
+        s.textureLimit = uint64_t{4} << 30;
+        try {
+            checkSane(s);
+        } catch (const InputError& error) {
+            CHECK_THAT(error.what(), contains("this driver's limit"));
+        }
+        s.techniques.parameters().reset();
+        checkSane(s); // and the small one is back
+    }
+}
+
+TEST_CASE("the same frame twice is the same to the last bit") {
+    for (const Card* card : catalogue()) {
+        const Session s = session(boxesOverFloor(), card->id);
+        const ShadowImage first = draw(s);
+        CHECK(draw(s).psi.values == first.psi.values);
+    }
+}

@@ -1,0 +1,289 @@
+// SPDX-License-Identifier: MIT
+#include "ui/side_panel.h"
+
+#include "ui/navigation.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace penumbra {
+
+namespace {
+
+// A printf format that shows a thousandth of the scene's size.
+ShortText metreFormat(float sceneSize) {
+    const int digits = std::clamp(3 - static_cast<int>(std::floor(std::log10(sceneSize))), 0, 6);
+    return ShortText("%.{}f", digits);
+}
+
+// `speed` per pixel. Typed numbers that are out of the limits are brought back into them.
+bool dragNumber(const char* id, float& value, float speed, Range limits, const char* format,
+                ImGuiSliderFlags flags = ImGuiSliderFlags_AlwaysClamp) {
+    float edited = value;
+    if (!ImGui::DragFloat(id, &edited, speed, static_cast<float>(limits.min), static_cast<float>(limits.max), format,
+                          flags) ||
+        !std::isfinite(edited))
+        return false;
+    value = edited;
+    return true;
+}
+
+// A length or angle over many decades: 100 pixels are a twentieth of them.
+void dragDecades(const char* id, float& value, Range limits, const char* format) {
+    const float speed = 0.0005f * static_cast<float>(limits.max - limits.min); // ImGui divides by the range
+    dragNumber(id, value, speed, limits, format, ImGuiSliderFlags_AlwaysClamp | ImGuiSliderFlags_Logarithmic);
+}
+
+bool dragPoint(const char* id, glm::vec3& point, float speed, const char* format) {
+    glm::vec3 edited = point;
+    const float limit = static_cast<float>(limits::coordinate.max);
+    if (!ImGui::DragFloat3(id, &edited.x, speed, -limit, limit, format, ImGuiSliderFlags_AlwaysClamp)) return false;
+    for (int i = 0; i < 3; ++i)
+        if (!std::isfinite(edited[i])) return false;
+    point = edited;
+    return true;
+}
+
+// Rows for two points that must not meet: where a thing is and where it looks.
+void pointRows(const char* placeLabel, glm::vec3& place, glm::vec3& target, const SceneFacts& facts) {
+    const glm::vec3 oldPlace = place, oldTarget = target;
+    const float speed = 0.002f * facts.size;
+    const ShortText format = metreFormat(facts.size);
+    row(placeLabel);
+    dragPoint("##place", place, speed, format.begin());
+    tooltip("x, y, z in metres. Drag, or Ctrl+click to type.");
+    row("Target  [m]");
+    dragPoint("##target", target, speed, format.begin());
+    tooltip("x, y, z in metres. Drag, or Ctrl+click to type.");
+    if (glm::length(target - place) < 1e-5f * facts.size) {
+        place = oldPlace;
+        target = oldTarget;
+    }
+}
+
+} // namespace
+
+Requests SidePanel::draw(Session& session, const SceneFacts& facts, Playback& playback) {
+    Requests requests;
+    if (section("Scene", true)) {
+        ImGui::PushID("scene");
+        scene(session, facts, requests);
+        timeControls(session, facts, playback);
+        ImGui::PopID();
+    }
+    if (section("Technique", true)) technique(session, requests);
+    if (section("Parameters", true)) parameters_.draw(session.techniques.parameters());
+    if (section("Presets", false)) presets(session, requests);
+    if (section("Light", true)) {
+        ImGui::PushID("light");
+        light(session, facts);
+        ImGui::PopID();
+    }
+    if (section("Camera", false)) {
+        ImGui::PushID("camera");
+        camera(session, facts);
+        ImGui::PopID();
+    }
+    if (section("Display", true)) displayControls(session.display);
+    return requests;
+}
+
+void SidePanel::scene(Session& session, const SceneFacts& facts, Requests& requests) {
+    const Scene& scene = *session.scene;
+    if (shownScene_ != &scene) {
+        shownScene_ = &scene;
+        path_.set(scene.file.string());
+    }
+    row("Scene");
+    if (ImGui::BeginCombo("##built-in", scene.name.c_str())) {
+        for (const std::string& name : builtIns_)
+            if (ImGui::Selectable(name.c_str(), name == scene.name)) requests.openScene = name;
+        ImGui::EndCombo();
+    }
+    tooltip("The scenes that come with the program");
+    row("File");
+    const float open = ImGui::CalcTextSize("Open…").x + 2 * ImGui::GetStyle().FramePadding.x;
+    ImGui::SetNextItemWidth(
+        std::max(ImGui::GetContentRegionAvail().x - open - ImGui::GetStyle().ItemInnerSpacing.x, 1.0f));
+    if (path_.edit("##path", ".gltf or .glb", ImGuiInputTextFlags_EnterReturnsTrue) && !path_.view().empty())
+        requests.openScene = std::string(path_.view());
+    tooltip(ShortText("{}\n\nType the path of a .gltf or .glb file and press Enter, or drop a file on the window",
+                      path_.view())
+                .view());
+    ImGui::SameLine(0, ImGui::GetStyle().ItemInnerSpacing.x);
+    requests.chooseFile = ImGui::Button("Open…");
+    row("Triangles");
+    text(ShortText("{}", facts.triangles).view());
+    row("Size");
+    text(ShortText("{:.3g} m across", facts.size).view());
+    row("Ground");
+    ImGui::Checkbox("##ground", &session.ground);
+    tooltip("A plane below the scene that receives shadows, for scenes without a floor");
+    if (!scene.notes.empty() &&
+        ImGui::TreeNode("notes", "%s", ShortText("{} notes on this file", scene.notes.size()).begin())) {
+        for (const std::string& note : scene.notes) wrappedText(colour::muted, note);
+        ImGui::TreePop();
+    }
+}
+
+void timeControls(Session& session, const SceneFacts& facts, Playback& playback) {
+    if (facts.duration <= 0) return;
+    row("Time");
+    double now = std::fmod(session.time, facts.duration);
+    const double first = 0;
+    if (ImGui::SliderScalar("##time", ImGuiDataType_Double, &now, &first, &facts.duration, "%.3f s",
+                            ImGuiSliderFlags_AlwaysClamp))
+        session.time = now;
+    row("");
+    if (ImGui::Button(playback.playing ? "Pause" : "Play")) playback.playing = !playback.playing;
+    tooltip("Space");
+    ImGui::SameLine();
+    if (ImGui::Button("Step")) {
+        playback.playing = false;
+        playback.stepOnce = true;
+    }
+    tooltip("One frame of 1/60 s");
+}
+
+void SidePanel::technique(Session& session, Requests& requests) {
+    const Card& card = session.techniques.card();
+    ImGui::SetNextItemWidth(-FLT_MIN);
+    if (ImGui::BeginCombo("##technique", ShortText("{}", card.title).begin(), ImGuiComboFlags_HeightLarge)) {
+        for (const Card* other : catalogue()) {
+            if (ImGui::Selectable(ShortText("{}", other->title).begin(), other == &card) && other != &card) {
+                session.techniques.choose(other->id);
+                requests.restart = true;
+            }
+            tooltip(other->idea);
+        }
+        ImGui::EndCombo();
+    }
+    if (card.year != 0)
+        wrappedText(
+            colour::muted,
+            ShortText("{}, {}{}{}", card.authors, card.year, card.venue.empty() ? "" : ", ", card.venue).view());
+    wrappedText(card.idea);
+    if ((!card.assumes.empty() || !card.fails.empty()) && ImGui::TreeNode("Assumes and fails")) {
+        if (!card.assumes.empty()) {
+            text(colour::muted, "Assumes");
+            wrappedText(card.assumes);
+        }
+        if (!card.fails.empty()) {
+            text(colour::muted, "Fails");
+            wrappedText(card.fails);
+        }
+        ImGui::TreePop();
+    }
+    if (ImGui::Button("Restart")) requests.restart = true;
+    tooltip("Forget all history and start again at the first frame (R)");
+}
+
+void SidePanel::presets(const Session& session, Requests& requests) {
+    const std::string_view id = session.techniques.card().id;
+    row("Load");
+    if (ImGui::BeginCombo("##presets", "choose…", ImGuiComboFlags_HeightLarge)) {
+        requests.listPresets = ImGui::IsWindowAppearing();
+        bool any = false;
+        for (const std::string& name : presetNames_) {
+            if (!name.starts_with(id) || name.size() <= id.size() + 1 || name[id.size()] != '/') continue;
+            any = true;
+            if (ImGui::Selectable(name.c_str() + id.size() + 1)) requests.loadPreset = name;
+        }
+        if (!any) text(colour::muted, "none for this technique yet");
+        ImGui::EndCombo();
+    }
+    row("Save as",
+        ImGui::CalcTextSize("Save").x + 2 * ImGui::GetStyle().FramePadding.x + ImGui::GetStyle().ItemInnerSpacing.x);
+    const bool entered = presetName_.edit("##name", "name", ImGuiInputTextFlags_EnterReturnsTrue);
+    ImGui::SameLine(0, ImGui::GetStyle().ItemInnerSpacing.x);
+    ImGui::BeginDisabled(presetName_.view().empty());
+    if ((ImGui::Button("Save") || entered) && !presetName_.view().empty())
+        requests.savePreset = std::string(presetName_.view());
+    ImGui::EndDisabled();
+}
+
+void SidePanel::light(Session& session, const SceneFacts& facts) {
+    AreaLight& light = session.light;
+    row("Shape");
+    const auto shapes = lightShapeNames();
+    if (ImGui::BeginCombo("##shape", ShortText("{}", shapes[static_cast<size_t>(light.shape)]).begin())) {
+        for (size_t i = 0; i < shapes.size(); ++i)
+            if (ImGui::Selectable(ShortText("{}", shapes[i]).begin(), static_cast<size_t>(light.shape) == i))
+                changeShape(light, static_cast<LightShape>(i));
+        ImGui::EndCombo();
+    }
+    if (light.shape == LightShape::Directional) {
+        row("Angular diameter");
+        dragDecades("##angle", light.size.x, limits::lightDegrees, "%.3g°");
+        tooltip("Full angle under which the light is seen; the sun has 0.533°");
+    } else {
+        row(light.shape == LightShape::Disk ? "Diameter" : "Width");
+        dragDecades("##width", light.size.x, limits::lightMetres, "%.4g m");
+        if (light.shape == LightShape::Rectangle) {
+            row("Height");
+            dragDecades("##height", light.size.y, limits::lightMetres, "%.4g m");
+        }
+    }
+    pointRows("Position  [m]", light.position, light.target, facts);
+
+    LightDirection direction = lightDirection(light);
+    row("Azimuth");
+    bool turned = dragNumber("##azimuth", direction.azimuth, 0.5f, {-180, 180}, "%.1f°");
+    tooltip("Round the target, from +Z towards +X (L + drag in the view)");
+    row("Elevation");
+    turned |= dragNumber("##elevation", direction.elevation, 0.5f, {-90, 90}, "%.1f°");
+    row("Distance");
+    turned |=
+        dragNumber("##distance", direction.distance, 0.003f * facts.size, {1e-4 * facts.size, limits::coordinate.max},
+                   ShortText("{} m", metreFormat(facts.size).view()).begin());
+    tooltip("From the target (L + wheel in the view)");
+    if (turned) setLightDirection(light, direction);
+
+    row("Intensity");
+    dragNumber("##intensity", light.intensity, 0.01f, {0, 1000}, "%.3f");
+    tooltip("Irradiance at the target when it faces the light, relative to white");
+    row("Colour");
+    ImGui::ColorEdit3("##colour", &light.colour.x, ImGuiColorEditFlags_Float | ImGuiColorEditFlags_NoInputs);
+    tooltip("Linear, before the intensity");
+    row("Show in the view");
+    ImGui::Checkbox("##show", &showLight_);
+    if (ImGui::Button("Reset light")) light = defaultLight(*session.scene, facts.pose);
+}
+
+void SidePanel::camera(Session& session, const SceneFacts& facts) {
+    Camera& camera = session.camera;
+    pointRows("Eye  [m]", camera.eye, camera.target, facts);
+    row("Field of view");
+    dragNumber("##fov", camera.fovY, 0.2f, limits::fovY, "%.1f°");
+    tooltip("Vertical");
+    if (!session.scene->cameras.empty()) {
+        row("Of the scene");
+        if (ImGui::BeginCombo("##cameras", "choose…")) {
+            for (size_t i = 0; i < session.scene->cameras.size(); ++i) {
+                const NamedCamera& named = session.scene->cameras[i];
+                ImGui::PushID(static_cast<int>(i));
+                if (ImGui::Selectable(named.name.empty() ? ShortText("camera {}", i + 1).begin() : named.name.c_str()))
+                    camera = sceneCamera(facts, named);
+                ImGui::PopID();
+            }
+            ImGui::EndCombo();
+        }
+    }
+    if (ImGui::Button("Reset camera")) camera = defaultCamera(*session.scene, facts.pose);
+}
+
+void displayControls(DisplaySettings& display) {
+    row("Show");
+    if (ImGui::RadioButton("lit", display.show == Show::Lit)) display.show = Show::Lit;
+    tooltip("The scene in its light (V)");
+    ImGui::SameLine();
+    if (ImGui::RadioButton("shadow  ψ", display.show == Show::Shadow)) display.show = Show::Shadow;
+    tooltip("The shadow image: black sees all of the light, white none of it (V)");
+    row("Exposure");
+    dragNumber("##exposure", display.exposure, 0.02f, limits::exposure, "%+.2f stops");
+    row("Ambient");
+    dragNumber("##ambient", display.ambient, 0.005f, limits::ambient, "%.3f");
+    tooltip("Light from everywhere, relative to the light's irradiance");
+}
+
+} // namespace penumbra

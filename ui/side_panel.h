@@ -1,0 +1,53 @@
+// SPDX-License-Identifier: MIT
+// The column on the right: scene, technique, parameters, presets, light, camera, display.
+#pragma once
+
+#include "ui/parameter_panel.h"
+#include "ui/scene_facts.h"
+
+#include <optional>
+
+namespace penumbra {
+
+// How time passes in the window.
+struct Playback {
+    bool playing = false;
+    bool stepOnce = false; // one frame forward, then still
+};
+
+// What a hand asked for that needs more than the session: the workspace carries it out.
+struct Requests {
+    std::optional<std::string> openScene, loadPreset, savePreset;
+    bool chooseFile = false;
+    bool listPresets = false;
+    bool restart = false; // forget all history
+};
+
+class SidePanel {
+public:
+    // Draws into the current ImGui window.
+    Requests draw(Session& session, const SceneFacts& facts, Playback& playback);
+
+    void setPresetNames(std::vector<std::string> names) { presetNames_ = std::move(names); }
+    bool lightShown() const { return showLight_; }
+
+private:
+    void scene(Session& session, const SceneFacts& facts, Requests& requests);
+    void technique(Session& session, Requests& requests);
+    void presets(const Session& session, Requests& requests);
+    void light(Session& session, const SceneFacts& facts);
+    void camera(Session& session, const SceneFacts& facts);
+
+    ParameterPanel parameters_;
+    std::vector<std::string> builtIns_ = builtInScenes();
+    std::vector<std::string> presetNames_;
+    const Scene* shownScene_ = nullptr; // whose path stands in the path field
+    TextField<4096> path_;
+    TextField<101> presetName_;
+    bool showLight_ = false;
+};
+
+void timeControls(Session& session, const SceneFacts& facts, Playback& playback);
+void displayControls(DisplaySettings& display);
+
+} // namespace penumbra

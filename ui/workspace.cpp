@@ -1,0 +1,303 @@
+// SPDX-License-Identifier: MIT
+#include "ui/workspace.h"
+
+#include <algorithm>
+
+namespace penumbra {
+
+namespace {
+
+constexpr ImGuiWindowFlags fixedWindow = ImGuiWindowFlags_NoTitleBar | ImGuiWindowFlags_NoResize |
+                                         ImGuiWindowFlags_NoMove | ImGuiWindowFlags_NoSavedSettings |
+                                         ImGuiWindowFlags_NoBringToFrontOnFocus;
+constexpr float sideWidth = 27;      // in font heights
+constexpr float lowestDrawer = 8;    // in font heights
+constexpr double step = 1.0 / 60;    // of time, by the step button [s]
+constexpr float longestFrame = 0.1f; // [s]; after a pause of the program time does not jump further
+
+bool beginFixed(const char* name, ImVec2 corner, ImVec2 size, ImGuiWindowFlags flags = 0) {
+    ImGui::SetNextWindowPos(corner);
+    ImGui::SetNextWindowSize({std::max(size.x, 1.0f), std::max(size.y, 1.0f)});
+    return ImGui::Begin(name, nullptr, fixedWindow | flags);
+}
+
+// A dialog in the middle of the window, wide enough for prose but never wider than the window.
+bool beginDialog(const char* title) {
+    const ImVec2 screen = ImGui::GetIO().DisplaySize;
+    const float width = std::min(36 * ImGui::GetFontSize(), 0.95f * screen.x);
+    ImGui::SetNextWindowSizeConstraints({width, 0}, {width, 0.95f * screen.y});
+    ImGui::SetNextWindowPos({screen.x / 2, screen.y / 2}, ImGuiCond_Always, {0.5f, 0.5f});
+    return ImGui::BeginPopupModal(
+        title, nullptr, ImGuiWindowFlags_AlwaysAutoResize | ImGuiWindowFlags_NoMove | ImGuiWindowFlags_NoSavedSettings);
+}
+
+} // namespace
+
+Workspace::Workspace(Session& session, Renderer& renderer, Actions actions)
+    : session_(session)
+    , renderer_(renderer)
+    , actions_(std::move(actions))
+    , facts_(session.scene) {
+    playback_.playing = session.timeStep != 0;
+}
+
+template <class Action> bool Workspace::attempt(Action&& action) {
+    try {
+        action();
+        return true;
+    } catch (const InputError& error) {
+        error_ = error.what();
+        openError_ = true;
+        return false;
+    }
+}
+
+void Workspace::openScene(std::string nameOrFile) {
+    pendingScene_ = std::move(nameOrFile);
+    pendingShown_ = false;
+}
+
+void Workspace::say(std::string message) {
+    message_ = std::move(message);
+    messageSeconds_ = 6;
+}
+
+bool Workspace::moving() const {
+    return viewport_.renderedNow() || pendingScene_ || playback_.playing || drawer_ == Drawer::Timings;
+}
+
+Timing Workspace::timing() const {
+    return renderer_.softwareRenderer() && drawer_ == Drawer::Timings ? Timing::Finish : Timing::Queries;
+}
+
+void Workspace::draw(const Keys& keys, float seconds, float pixelsPerUnit) {
+    openPending();
+    strokes(keys);
+    advanceTime(std::min(seconds, longestFrame));
+
+    const ImVec2 screen = ImGui::GetIO().DisplaySize;
+    const float em = ImGui::GetFontSize();
+    const float side = std::min(sideWidth * em, 0.6f * screen.x), left = screen.x - side;
+    const float barHeight = ImGui::GetFrameHeight() + 2 * ImGui::GetStyle().FramePadding.y;
+    const float highest = std::max(0.75f * (screen.y - barHeight), 1.0f);
+    const float drawerHeight = drawer_ == Drawer::Closed ? 0 : std::min(drawerHeight_ * em, highest);
+    const float viewHeight = screen.y - barHeight - drawerHeight;
+
+    bar({left, barHeight});
+    Requests requests;
+    if (beginFixed("side", {left, 0}, {side, screen.y}, ImGuiWindowFlags_AlwaysVerticalScrollbar))
+        requests = side_.draw(session_, facts_, playback_);
+    ImGui::End();
+
+    ImGui::PushStyleVar(ImGuiStyleVar_WindowPadding, ImVec2(0, 0));
+    if (beginFixed("view", {0, barHeight}, {left, viewHeight},
+                   ImGuiWindowFlags_NoScrollbar | ImGuiWindowFlags_NoScrollWithMouse)) {
+        viewport_.draw(session_, renderer_, facts_, keys, timing(), drawer_ == Drawer::Timings, side_.lightShown(),
+                       std::min(seconds, longestFrame), pixelsPerUnit);
+        message({0, barHeight + viewHeight}, left);
+    }
+    ImGui::End();
+    ImGui::PopStyleVar();
+    if (viewport_.renderedNow()) {
+        if (timed_ != &session_.techniques.card() || timedHow_ != timing()) timings_.forget();
+        timed_ = &session_.techniques.card();
+        timedHow_ = timing();
+        timings_.add(renderer_.runner());
+    }
+
+    if (drawer_ != Drawer::Closed) {
+        if (beginFixed("drawer", {0, screen.y - drawerHeight}, {left, drawerHeight},
+                       ImGuiWindowFlags_NoScrollbar | ImGuiWindowFlags_NoScrollWithMouse)) {
+            splitter({0, screen.y - drawerHeight}, left, highest / em);
+            drawer(pixelsPerUnit);
+        }
+        ImGui::End();
+    }
+    carryOut(requests);
+    if (keys.picture) takePicture();
+    dialogs(keys);
+    messageSeconds_ -= seconds;
+}
+
+void Workspace::strokes(const Keys& keys) {
+    if (keys.help) openHelp_ = true;
+    if (keys.restart) viewport_.restart();
+    if (keys.show) session_.display.show = session_.display.show == Show::Lit ? Show::Shadow : Show::Lit;
+    if (keys.play) playback_.playing = !playback_.playing;
+    if (keys.buffers) toggle(Drawer::Buffers);
+    if (keys.timings) toggle(Drawer::Timings);
+    if (keys.open) chooser_.open(facts_.scene->file.parent_path());
+}
+
+void Workspace::advanceTime(float seconds) {
+    session_.timeStep = 0;
+    if (facts_.duration <= 0) playback_ = {};
+    if (playback_.playing)
+        session_.timeStep = seconds;
+    else if (playback_.stepOnce)
+        session_.timeStep = step;
+    playback_.stepOnce = false;
+    session_.time += session_.timeStep;
+}
+
+void Workspace::bar(ImVec2 size) {
+    ImGui::PushStyleVar(ImGuiStyleVar_WindowPadding,
+                        ImVec2(ImGui::GetStyle().ItemSpacing.x, ImGui::GetStyle().FramePadding.y));
+    if (beginFixed("bar", {0, 0}, size, ImGuiWindowFlags_NoScrollbar | ImGuiWindowFlags_NoScrollWithMouse)) {
+        if (ImGui::Button("Open…")) chooser_.open(facts_.scene->file.parent_path());
+        tooltip("Ctrl+O");
+        ImGui::SameLine();
+        if (ImGui::Button("Picture")) takePicture();
+        tooltip("Save what the view shows as a PNG (F12)");
+        ImGui::SameLine();
+        if (toggleButton("Buffers", drawer_ == Drawer::Buffers)) toggle(Drawer::Buffers);
+        tooltip("Look into every image of the frame (B)");
+        ImGui::SameLine();
+        if (toggleButton("Timings", drawer_ == Drawer::Timings)) toggle(Drawer::Timings);
+        tooltip("What each pass costs (T)");
+        ImGui::SameLine();
+        if (ImGui::Button("Help")) openHelp_ = true;
+        tooltip("Keys and mouse (H)");
+        ImGui::SameLine();
+        status();
+    }
+    ImGui::End();
+    ImGui::PopStyleVar();
+}
+
+void Workspace::status() {
+    const bool approximate = renderer_.softwareRenderer() && timedHow_ == Timing::Queries;
+    const double frame = timings_.frameMedian();
+    const ShortText time =
+        frame > 0 ? ShortText("{:.2f} ms{}", frame, approximate ? " approximate" : "") : ShortText("– ms");
+    const ShortText line("{} × {}    {}", session_.size.x, session_.size.y, time.view());
+    ImGui::AlignTextToFramePadding();
+    if (ImGui::CalcTextSize(line.begin(), line.end()).x > ImGui::GetContentRegionAvail().x) return;
+    ImGui::PushStyleColor(ImGuiCol_Text, colour::muted);
+    rightText(line.view());
+    ImGui::PopStyleColor();
+    tooltip(approximate ? "The frame's time on the renderer. Timer queries of a software renderer leave work out; open "
+                          "the timings for honest numbers."
+                        : "The view's pixels and the frame's time on the renderer");
+}
+
+void Workspace::splitter(ImVec2 corner, float width, float highest) {
+    const float em = ImGui::GetFontSize(), thickness = 0.5f * em;
+    const ImVec2 contentStart = ImGui::GetCursorPos();
+    ImGui::SetCursorScreenPos(corner);
+    ImGui::InvisibleButton("splitter", {std::max(width, 1.0f), thickness});
+    const bool grabbed = ImGui::IsItemActive();
+    if (grabbed)
+        drawerHeight_ =
+            std::clamp(drawerHeight_ - ImGui::GetIO().MouseDelta.y / em, lowestDrawer, std::max(highest, lowestDrawer));
+    if (grabbed || ImGui::IsItemHovered()) ImGui::SetMouseCursor(ImGuiMouseCursor_ResizeNS);
+    ImGui::GetWindowDrawList()->AddLine(corner, {corner.x + width, corner.y},
+                                        ImGui::GetColorU32(grabbed ? ImGuiCol_SeparatorActive : ImGuiCol_Separator),
+                                        0.12f * em);
+    ImGui::SetCursorPos(contentStart);
+}
+
+void Workspace::drawer(float pixelsPerUnit) {
+    if (!renderer_.hasFrame()) return;
+    if (drawer_ == Drawer::Buffers)
+        buffers_.draw(renderer_, viewport_.frames(), pixelsPerUnit);
+    else
+        timings_.draw(renderer_, renderer_.softwareRenderer() && timedHow_ == Timing::Queries);
+}
+
+void Workspace::carryOut(Requests& requests) {
+    if (requests.restart) viewport_.restart();
+    if (requests.chooseFile) chooser_.open(facts_.scene->file.parent_path());
+    if (requests.openScene) openScene(std::move(*requests.openScene));
+    if (requests.listPresets) side_.setPresetNames(actions_.presetNames());
+    if (requests.loadPreset && attempt([&] { actions_.loadPreset(*requests.loadPreset); })) viewport_.restart();
+    if (requests.savePreset && attempt([&] { actions_.savePreset(*requests.savePreset); }))
+        say(fmt::format("Preset {} saved", *requests.savePreset));
+}
+
+// Loading blocks: a frame that says so comes first.
+void Workspace::openPending() {
+    if (!pendingScene_) return;
+    if (!pendingShown_) {
+        say(fmt::format("Loading {} …", *pendingScene_));
+        pendingShown_ = true;
+        return;
+    }
+    const std::string wanted = std::move(*pendingScene_);
+    pendingScene_.reset();
+    message_.clear();
+    if (!attempt([&] { actions_.openScene(wanted); })) return;
+    facts_ = SceneFacts(session_.scene);
+    playback_ = {};
+    viewport_.invalidate();
+    viewport_.restart();
+    timings_.forget();
+    say(fmt::format("{}: {} triangles", session_.scene->name, facts_.triangles));
+}
+
+void Workspace::takePicture() {
+    if (!renderer_.hasFrame()) return say("There is no picture to save yet");
+    attempt([&] { say(fmt::format("Saved {}", actions_.savePicture().string())); });
+}
+
+void Workspace::message(ImVec2 corner, float width) {
+    if (messageSeconds_ <= 0 || message_.empty()) return;
+    const float padding = 0.6f * ImGui::GetFontSize(), wrap = std::max(width - 4 * padding, 1.0f);
+    const char* first = message_.data();
+    const char* last = first + message_.size();
+    const ImVec2 extent = ImGui::CalcTextSize(first, last, false, wrap);
+    const float opacity = std::min(messageSeconds_, 1.0f);
+    const ImVec2 from{corner.x + padding, corner.y - extent.y - 2 * padding};
+    ImDrawList& list = *ImGui::GetWindowDrawList();
+    ImVec4 paper = ImGui::GetStyleColorVec4(ImGuiCol_PopupBg), ink = colour::text;
+    paper.w = 0.92f * opacity;
+    ink.w = opacity;
+    list.AddRectFilled(from, {from.x + extent.x + 2 * padding, from.y + extent.y + padding}, ImGui::GetColorU32(paper),
+                       0.3f * ImGui::GetFontSize());
+    list.AddText(ImGui::GetFont(), ImGui::GetFontSize(), {from.x + padding, from.y + padding / 2},
+                 ImGui::GetColorU32(ink), first, last, wrap);
+}
+
+void Workspace::dialogs(const Keys& keys) {
+    if (const auto file = chooser_.draw(keys.escape)) openScene(file->string());
+    helpDialog(keys.escape);
+    errorDialog(keys.escape);
+}
+
+void Workspace::helpDialog(bool close) {
+    constexpr const char* title = "Keys and mouse";
+    if (openHelp_) ImGui::OpenPopup(title);
+    openHelp_ = false;
+    if (!beginDialog(title)) return;
+    if (ImGui::BeginTable("keys", 2, ImGuiTableFlags_SizingStretchProp)) {
+        for (const KeyHelp& help : keyHelp) {
+            ImGui::TableNextRow();
+            ImGui::TableNextColumn();
+            if (help.meaning.empty()) {
+                ImGui::Spacing();
+                text(colour::muted, help.keys);
+                continue;
+            }
+            text(help.keys);
+            ImGui::TableNextColumn();
+            wrappedText(help.meaning);
+        }
+        ImGui::EndTable();
+    }
+    ImGui::Spacing();
+    if (ImGui::Button("Close") || close) ImGui::CloseCurrentPopup();
+    ImGui::EndPopup();
+}
+
+void Workspace::errorDialog(bool close) {
+    constexpr const char* title = "That did not work";
+    if (openError_) ImGui::OpenPopup(title);
+    openError_ = false;
+    if (!beginDialog(title)) return;
+    wrappedText(error_);
+    ImGui::Spacing();
+    if (ImGui::Button("Close") || close) ImGui::CloseCurrentPopup();
+    ImGui::EndPopup();
+}
+
+} // namespace penumbra

@@ -1,0 +1,84 @@
+// SPDX-License-Identifier: MIT
+// The whole content of the window: bar, view, side panel, drawer, dialogs. Knows no window system.
+#pragma once
+
+#include "ui/buffer_panel.h"
+#include "ui/file_chooser.h"
+#include "ui/side_panel.h"
+#include "ui/timings_panel.h"
+#include "ui/viewport.h"
+
+#include <filesystem>
+#include <functional>
+#include <optional>
+
+namespace penumbra {
+
+// What the panels ask of the program around them. All may throw InputError and have changed nothing then.
+struct Actions {
+    std::function<void(const std::string& nameOrFile)> openScene; // calls session.setScene
+    std::function<std::vector<std::string>()> presetNames;        // "technique/name"
+    std::function<void(const std::string&name)> loadPreset, savePreset;
+    std::function<std::filesystem::path()> savePicture; // of the last frame; where it is
+};
+
+class Workspace {
+public:
+    Workspace(Session& session, Renderer& renderer, Actions actions);
+
+    // Builds one ImGui frame and renders the view. `seconds` since the last one; `pixelsPerUnit`: the framebuffer's
+    // scale.
+    void draw(const Keys& keys, float seconds, float pixelsPerUnit);
+
+    void openScene(std::string nameOrFile);
+    void say(std::string message); // a line that fades
+    // Whether the next frame brings something new without any input.
+    bool moving() const;
+
+private:
+    enum class Drawer { Closed, Buffers, Timings };
+
+    void strokes(const Keys& keys);
+    void advanceTime(float seconds);
+    void bar(ImVec2 size);
+    void status();
+    void drawer(float pixelsPerUnit);
+    void splitter(ImVec2 corner, float width, float highest);
+    void carryOut(Requests& requests);
+    void openPending();
+    void takePicture();
+    void dialogs(const Keys& keys);
+    void helpDialog(bool close);
+    void errorDialog(bool close);
+    void message(ImVec2 corner, float width);
+    void toggle(Drawer drawer) { drawer_ = drawer_ == drawer ? Drawer::Closed : drawer; }
+    Timing timing() const;
+
+    // Runs what may meet bad input; an InputError becomes a dialog.
+    template <class Action> bool attempt(Action&& action);
+
+    Session& session_;
+    Renderer& renderer_;
+    Actions actions_;
+    SceneFacts facts_;
+    Playback playback_;
+    SidePanel side_;
+    Viewport viewport_;
+    BufferPanel buffers_;
+    TimingsPanel timings_;
+    FileChooser chooser_;
+
+    Drawer drawer_ = Drawer::Closed;
+    float drawerHeight_ = 19;     // in font heights
+    const Card* timed_ = nullptr; // whose times the timings panel has gathered, and how
+    Timing timedHow_ = Timing::Off;
+
+    std::optional<std::string> pendingScene_;
+    bool pendingShown_ = false; // one frame has said that it is loading
+    std::string error_;
+    bool openError_ = false, openHelp_ = false;
+    std::string message_;
+    float messageSeconds_ = 0; // how long it stays
+};
+
+} // namespace penumbra
