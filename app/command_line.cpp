@@ -14,8 +14,7 @@
 namespace penumbra {
 namespace {
 
-// --- values
-// ------------------------------------------------------------------------------------------------------------
+// --- values --------------------------------------------------------------------------------------------------------
 
 [[noreturn]] void refuse(std::string_view name, std::string_view text, std::string_view expected) {
     throw InputError(fmt::format("{}: '{}' is not {}", name, text, expected));
@@ -44,8 +43,39 @@ long long integerOption(std::string_view name, std::string_view text, long long 
     return *value;
 }
 
-// --- the options: name, value, help and where they go, once
-// ------------------------------------------------------------
+bool contains(Range range, double value) { return value >= range.min && value <= range.max; } // false for NaN
+
+// Numbers with commas between them, as many as `least` to `most`.
+std::vector<float> numbers(std::string_view name, std::string_view text, size_t least, size_t most,
+                           std::string_view expected) {
+    std::vector<float> values;
+    for (const std::string_view piece : split(text, ',')) {
+        const std::optional<float> value = parseNumber<float>(piece);
+        if (!value || !std::isfinite(*value)) refuse(name, text, expected);
+        values.push_back(*value);
+    }
+    if (values.size() < least || values.size() > most) refuse(name, text, expected);
+    return values;
+}
+
+double realOption(std::string_view name, const std::optional<std::string>& text, Range range, double fallback) {
+    if (!text) return fallback;
+    const std::optional<double> value = parseNumber<double>(*text);
+    if (!value || !contains(range, *value))
+        refuse(name, *text, fmt::format("a number in {:g}..{:g}", range.min, range.max));
+    return *value;
+}
+
+// The index of the text among `names`.
+size_t nameOption(std::string_view option, std::string_view text, std::span<const std::string_view> names) {
+    const auto found = std::find(names.begin(), names.end(), text);
+    if (found == names.end())
+        throw InputError(
+            fmt::format("{}: '{}' is not one of {}{}", option, text, fmt::join(names, ", "), suggestion(text, names)));
+    return static_cast<size_t>(found - names.begin());
+}
+
+// --- the options: name, value, help and where they go, once --------------------------------------------------------
 
 struct ValueOption {
     const char* name;
@@ -140,37 +170,7 @@ void refuseExtras(const CLI::App& app) {
     throw InputError(fmt::format("unknown option '{}'{}", given, suggestion(given, views)));
 }
 
-bool contains(Range range, double value) { return value >= range.min && value <= range.max; } // false for NaN
-
-// Numbers with commas between them, as many as `least` to `most`.
-std::vector<float> numbers(std::string_view name, std::string_view text, size_t least, size_t most,
-                           std::string_view expected) {
-    std::vector<float> values;
-    for (const std::string_view piece : split(text, ',')) {
-        const std::optional<float> value = parseNumber<float>(piece);
-        if (!value || !std::isfinite(*value)) refuse(name, text, expected);
-        values.push_back(*value);
-    }
-    if (values.size() < least || values.size() > most) refuse(name, text, expected);
-    return values;
-}
-
-double realOption(std::string_view name, const std::optional<std::string>& text, Range range, double fallback) {
-    if (!text) return fallback;
-    const std::optional<double> value = parseNumber<double>(*text);
-    if (!value || !contains(range, *value))
-        refuse(name, *text, fmt::format("a number in {:g}..{:g}", range.min, range.max));
-    return *value;
-}
-
-// The index of the text among `names`.
-size_t nameOption(std::string_view option, std::string_view text, std::span<const std::string_view> names) {
-    const auto found = std::find(names.begin(), names.end(), text);
-    if (found == names.end())
-        throw InputError(
-            fmt::format("{}: '{}' is not one of {}{}", option, text, fmt::join(names, ", "), suggestion(text, names)));
-    return static_cast<size_t>(found - names.begin());
-}
+// --- what the options mean for a session ---------------------------------------------------------------------------
 
 glm::ivec2 parseSize(std::string_view text) {
     const std::vector<std::string_view> pieces = split(text, 'x');

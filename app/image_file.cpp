@@ -27,8 +27,7 @@ void appendFloats(std::string& bytes, const float* values, size_t count) {
     bytes.append(reinterpret_cast<const char*>(values), count * sizeof(float));
 }
 
-// --- PNG: libpng leaves by longjmp on errors, so no frame between setjmp and it may own anything
-// -----------------------
+// --- PNG: libpng leaves by longjmp on errors, so no frame between setjmp and it may own anything -------------------
 
 struct PngJob {
     int width, height, colourType;
@@ -91,7 +90,7 @@ std::string encodePng(const fs::path& file, const Picture& picture, const Facts&
     return std::move(job.bytes);
 }
 
-// --- OpenEXR ---------------------------------------------------------------------------------------------------------
+// --- OpenEXR -------------------------------------------------------------------------------------------------------
 
 std::string encodeExr(const fs::path& file, const Picture& picture, const Facts& facts) {
     const size_t channels = picture.channels.size();
@@ -149,7 +148,7 @@ std::string encodeExr(const fs::path& file, const Picture& picture, const Facts&
     return bytes;
 }
 
-// --- PFM and NPY -----------------------------------------------------------------------------------------------------
+// --- PFM and NPY ---------------------------------------------------------------------------------------------------
 
 std::string encodePfm(const fs::path& file, const Picture& picture) {
     const size_t channels = picture.channels.size();

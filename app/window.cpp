@@ -66,11 +66,14 @@ public:
         glfwWindowHint(GLFW_OPENGL_PROFILE, GLFW_OPENGL_CORE_PROFILE);
         glfwWindowHint(GLFW_SCALE_TO_MONITOR, GLFW_TRUE);
         glfwWindowHintString(GLFW_X11_CLASS_NAME, "penumbra");
-        const glm::ivec2 size = glm::min(glm::ivec2(options.width, options.height), largestWindow());
-        window_ = glfwCreateWindow(size.x, size.y, "Penumbra", nullptr, nullptr);
+        window_ = glfwCreateWindow(options.width, options.height, "Penumbra", nullptr, nullptr);
         if (!window_)
             throw InputError(
                 fmt::format("the window needs OpenGL 4.5, which this display does not offer ({})", lastGlfwError()));
+        glm::ivec2 scaled(0);
+        glfwGetWindowSize(window_, &scaled.x, &scaled.y);
+        const glm::ivec2 fitting = glm::min(scaled, largestWindow());
+        if (fitting != scaled) glfwSetWindowSize(window_, fitting.x, fitting.y);
         glfwMakeContextCurrent(window_);
         glfwSwapInterval(1);
         glfwSetWindowUserPointer(window_, &heard_);

@@ -840,10 +840,11 @@ Gltf twoBoxes() {
 
 // --- those with closed forms: light at 10 m facing down, caster at 6 m, floor at 0 ----------------------------------
 
-// V(x) = clamp((a + x (H − h)/h) / 2a) with a = ½, H = 10, h = 6; the slab reaches far beyond every penumbra.
+// V(x) = clamp((a + x (H − h)/h) / 2a) with a = ½, H = 10, h = 6, over |z| < 3: there no ray to the light passes the
+// slab's other sides. It is no larger, so that a shadow map has its texels where the edge is.
 Gltf halfPlane() {
-    Stage s("half-plane", 30);
-    s.gltf.object("slab", box({-20, 5.99, -20}, {0, 6, 20}), s.red);
+    Stage s("half-plane", 6);
+    s.gltf.object("slab", box({-5, 5.99, -5}, {0, 6, 5}), s.red);
     s.gltf.camera({.eye = {3, 3, 2.5f}, .target = {0, 0, 0}});
     s.gltf.light({.position = {0, 10, 0}, .target = {0, 0, 0}, .size = {1, 1}});
     return std::move(s.gltf);

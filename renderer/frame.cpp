@@ -58,7 +58,8 @@ Surfaces drawSurfaces(Flow& flow, const View& view, const SceneState& state, con
     Draw draw{.shader = "geometry_buffer.glsl",
               .geometry = geometry,
               .poseVersion = state.poseVersion(),
-              .faces = Faces::AsMaterial};
+              .faces = Faces::AsMaterial,
+              .textured = true};
     PassSpec pass{.stage = Stage::Scene,
                   .name = "geometry-buffer",
                   .writes = {{"depth", Format::R32F, extent, depthChannels},

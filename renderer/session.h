@@ -15,13 +15,13 @@ struct Range {
     double min, max;
 };
 namespace limits {
-inline constexpr Range pixels{1, 16384};             // of each side of the picture
-inline constexpr Range coordinate{-1e6, 1e6};        // of eyes, targets and lights [m]
-inline constexpr Range fovY{1, 170};                 // [degrees]
-inline constexpr Range lightMetres{1e-6, 1e5};       // width, height or diameter of a light
-inline constexpr Range lightDegrees{1e-3, 120};      // angular diameter of a directional light
-inline constexpr Range seconds{0, 1e7};              // of the animation
-inline constexpr Range exposure{-20, 20};            // [stops]
+inline constexpr Range pixels{1, 16384};        // of each side of the picture
+inline constexpr Range coordinate{-1e6, 1e6};   // of eyes, targets and lights [m]
+inline constexpr Range fovY{1, 170};            // [degrees]
+inline constexpr Range lightMetres{1e-6, 1e5};  // width, height or diameter of a light
+inline constexpr Range lightDegrees{1e-3, 120}; // angular diameter of a directional light
+inline constexpr Range seconds{0, 1e7};         // of the animation
+inline constexpr Range exposure{-20, 20};       // [stops]
 inline constexpr Range ambient{0, 100};
 inline constexpr Range textureMebibytes{1, 1 << 20};
 } // namespace limits
@@ -59,9 +59,9 @@ struct Session {
     bool ground = false; // the extra plane below the scene
     TechniqueShelf techniques;
     DisplaySettings display;
-    double time = 0;      // of the scene's animation [s]
-    double timeStep = 0;  // how far it moves from frame to frame [s]; 0: a still scene
-    uint32_t frame = 0;   // frames since the last reset
+    double time = 0;     // of the scene's animation [s]
+    double timeStep = 0; // how far it moves from frame to frame [s]; 0: a still scene
+    uint32_t frame = 0;  // frames since the last reset
     uint32_t seed = 0;
     glm::ivec2 size{1280, 720};
     uint64_t textureLimit = uint64_t{4} << 30; // bytes

@@ -12,10 +12,11 @@ layout(std140, binding = 0) uniform Constants {
 #ifdef VERTEX_SHADER
 out vec3 positionWorld;
 out vec3 normalWorld;
-#if defined(COLOUR) || defined(MASKED)
+#if defined(TEXTURED) || defined(MASKED)
 out vec2 uv;
-flat out uint draw;
 #endif
+flat out vec4 baseColour;
+flat out vec4 emissive_cutoff;
 #ifdef MOTION
 out vec4 lastClip;
 out vec4 clip;
@@ -29,10 +30,11 @@ void main()
     mat3 m = mat3(worldFromModel);
     normalWorld = mat3(cross(m[1], m[2]), cross(m[2], m[0]), cross(m[0], m[1])) * normalModel;
     gl_Position = view.clipFromWorld * world;
-#if defined(COLOUR) || defined(MASKED)
+#if defined(TEXTURED) || defined(MASKED)
     uv = uvModel;
-    draw = drawIndex;
 #endif
+    baseColour = draws[drawIndex].baseColour;
+    emissive_cutoff = draws[drawIndex].emissive_cutoff;
 #ifdef MOTION
     clip = gl_Position;
     lastClip = lastClipFromWorld * (draws[drawIndex].lastWorldFromModel * vec4(positionModel, 1.0));
@@ -43,11 +45,12 @@ void main()
 #ifdef FRAGMENT_SHADER
 in vec3 positionWorld;
 in vec3 normalWorld;
-#if defined(COLOUR) || defined(MASKED)
+#if defined(TEXTURED) || defined(MASKED)
 in vec2 uv;
-flat in uint draw;
 uniform sampler2D baseColourTexture;
 #endif
+flat in vec4 baseColour;
+flat in vec4 emissive_cutoff;
 layout(location = 0) out float depth;
 layout(location = 1) out vec4 normal;
 #ifdef COLOUR
@@ -60,11 +63,12 @@ layout(location = MOTION) out vec2 motion;
 #endif
 void main()
 {
-#if defined(COLOUR) || defined(MASKED)
-    vec4 base = texture(baseColourTexture, uv) * draws[draw].baseColour;
+    vec4 base = baseColour;
+#if defined(TEXTURED) || defined(MASKED)
+    base *= texture(baseColourTexture, uv);
 #endif
 #ifdef MASKED
-    if (base.a < draws[draw].emissive_cutoff.w) discard;
+    if (base.a < emissive_cutoff.w) discard;
 #endif
     vec3 towardsEye = view.eyeWorld.xyz - positionWorld;
     vec3 geometric = cross(dFdx(positionWorld), dFdy(positionWorld));
@@ -77,7 +81,7 @@ void main()
     normal = vec4(octahedralFromUnit(geometric), octahedralFromUnit(shading));
     depth = 1.0 / gl_FragCoord.w; // clip w is the eye depth
 #ifdef COLOUR
-    colour = vec4(base.rgb, 1.0) + vec4(draws[draw].emissive_cutoff.xyz, 0.0);
+    colour = vec4(base.rgb, 1.0) + vec4(emissive_cutoff.xyz, 0.0);
 #endif
 #ifdef MOTION
     motion = (lastClip.xy / lastClip.w - clip.xy / clip.w) * 0.5 * view.size.xy;

@@ -15,12 +15,13 @@ struct Lookup {
     vec2 gradient;  // of the plane; see planeGradient(), per texel
     float compared; // the receiver's depth in the units of the comparison
     float offset;   // added to a stored depth before the comparison
-    float floor_w;  // area light: the least 1 + g·δ, where the plane reaches the far end
+    float farthest; // of the plane's change of depth: where it reaches the far end, or at the receiver itself
 };
 
-// `constantBias` in map depth, `slopeTexels` in texels of slope, `withPlane` false compares every texel with the
-// receiver's own depth.
-Lookup makeLookup(Receiver r, float constantBias, float slopeTexels, bool withPlane)
+// `constantBias` in map depth, `slopeTexels` in texels of slope. With `withPlane` false every texel is compared with the
+// receiver's own depth. `onlyNearer`: a texel must also be nearer to the light than the receiver itself, as everything
+// between the two is; without it surfaces that a concave corner shares with the receiver count as blockers.
+Lookup makeLookup(Receiver r, float constantBias, float slopeTexels, bool withPlane, bool onlyNearer)
 {
     Lookup l;
     float size = lightView.light.z;
@@ -36,11 +37,11 @@ Lookup makeLookup(Receiver r, float constantBias, float slopeTexels, bool withPl
         g *= perMetre;
         l.compared = (r.d - lightView.range.x) * perMetre;
         l.offset = constantBias + slopeTexels * slope * perMetre;
-        l.floor_w = 0.0;
+        l.farthest = onlyNearer ? 0.0 : 1.0;
     } else {
         l.compared = r.d * perMetre;
         l.offset = lightView.range.x * perMetre + constantBias + slopeTexels * slope * r.d * perMetre;
-        l.floor_w = r.d / lightView.range.y;
+        l.farthest = onlyNearer ? 0.0 : r.d / lightView.range.y - 1.0;
     }
     l.gradient = withPlane ? g : vec2(0.0);
     return l;
@@ -51,8 +52,8 @@ float blocks(Lookup l, float z, vec2 delta)
 {
     float change = dot(l.gradient, delta);
     float stored = z + l.offset;
-    if (directional) return z < 1.0 && stored < l.compared + change ? 1.0 : 0.0;
-    return z < 1.0 && stored * max(1.0 + change, l.floor_w) < l.compared ? 1.0 : 0.0;
+    if (directional) return z < 1.0 && stored < l.compared + min(change, l.farthest) ? 1.0 : 0.0;
+    return z < 1.0 && stored * (1.0 + max(change, l.farthest)) < l.compared ? 1.0 : 0.0;
 }
 
 // The stored depth of the texel at `place` [texels]; outside the map its empty border answers.

@@ -47,6 +47,7 @@ void FileChooser::enter(const fs::path& folder) {
 
 std::optional<fs::path> FileChooser::draw(bool cancelled) {
     if (opening_) ImGui::OpenPopup(title);
+    cancelled = cancelled && !opening_;
     opening_ = false;
     const ImVec2 screen = ImGui::GetIO().DisplaySize;
     const float em = ImGui::GetFontSize();

@@ -29,6 +29,7 @@ void timeRow(std::string_view name, double milliseconds, double frame) {
     ImGui::TableNextRow();
     ImGui::TableNextColumn();
     text(name);
+    tooltip(name); // the column may be too narrow for it
     ImGui::TableNextColumn();
     rightText(ShortText("{:.3f}", milliseconds).view());
     ImGui::TableNextColumn();
@@ -80,12 +81,12 @@ void TimingsPanel::forget() {
 void TimingsPanel::draw(const Renderer& renderer, bool approximate) const {
     text(colour::muted,
          ShortText("Median of the last 60 frames{}  {}", approximate ? ", approximate" : "", renderer.driver()).view());
-    const float half = (ImGui::GetContentRegionAvail().x - ImGui::GetStyle().ItemSpacing.x) / 2;
-    ImGui::BeginChild("times", {half, 0});
+    const float share = 0.44f * (ImGui::GetContentRegionAvail().x - ImGui::GetStyle().ItemSpacing.x);
+    ImGui::BeginChild("times", {share, 0});
     passTable(renderer.flow());
     ImGui::EndChild();
     ImGui::SameLine();
-    ImGui::BeginChild("bytes", {half, 0});
+    ImGui::BeginChild("bytes", {0, 0});
     imageTable(renderer.flow());
     ImGui::EndChild();
 }
@@ -95,7 +96,7 @@ void TimingsPanel::passTable(const Flow& flow) const {
     ImGui::TableSetupColumn("Pass", ImGuiTableColumnFlags_WidthStretch);
     numberColumns(5, {"ms", "%"});
     ImGui::TableSetupScrollFreeze(0, 1);
-    headers({"Pass", "ms", "% of frame"});
+    headers({"Pass", "ms", "% frame"});
     const double frame = frame_.median();
     ImGui::PushStyleColor(ImGuiCol_Text, colour::accent);
     timeRow("Frame", frame, frame);
@@ -112,8 +113,7 @@ void TimingsPanel::passTable(const Flow& flow) const {
         timeRow(stageName(stage), sum, frame);
         ImGui::PopStyleColor();
         for (const Row& row : rows_)
-            if (ofStage(row))
-                timeRow(ShortText("    {}", flow.label(row.label)).view(), row.milliseconds.median(), frame);
+            if (ofStage(row)) timeRow(flow.label(row.label), row.milliseconds.median(), frame);
     }
     ImGui::EndTable();
 }
@@ -121,14 +121,16 @@ void TimingsPanel::passTable(const Flow& flow) const {
 void imageTable(const Flow& flow) {
     if (!ImGui::BeginTable("images", 4, tableFlags)) return;
     ImGui::TableSetupColumn("Image", ImGuiTableColumnFlags_WidthStretch);
-    numberColumns(7, {"Size", "Format"});
-    numberColumns(5, {"Bytes"});
+    numberColumns(6, {"Size"});
+    numberColumns(7.5f, {"Format"});
+    numberColumns(4.5f, {"Memory"});
     ImGui::TableSetupScrollFreeze(0, 1);
     headers({"Image", "Size", "Format", "Memory"});
     const auto line = [](std::string_view name, std::string_view size, std::string_view format, uint64_t bytes) {
         ImGui::TableNextRow();
         ImGui::TableNextColumn();
         text(name);
+        tooltip(name); // the column may be too narrow for it
         ImGui::TableNextColumn();
         rightText(size);
         ImGui::TableNextColumn();

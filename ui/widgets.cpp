@@ -65,7 +65,7 @@ void subtitle(std::string_view title) {
 
 void row(std::string_view label, float reserved) {
     const float width = ImGui::GetWindowContentRegionMax().x - ImGui::GetWindowContentRegionMin().x;
-    const float column = ImGui::GetWindowContentRegionMin().x + 0.40f * width;
+    const float column = ImGui::GetWindowContentRegionMin().x + 0.42f * width;
     ImGui::AlignTextToFramePadding();
     ImGui::PushTextWrapPos(column - ImGui::GetStyle().ItemInnerSpacing.x);
     text(label);

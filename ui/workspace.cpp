@@ -260,8 +260,8 @@ void Workspace::message(ImVec2 corner, float width) {
 
 void Workspace::dialogs(const Keys& keys) {
     if (const auto file = chooser_.draw(keys.escape)) openScene(file->string());
-    helpDialog(keys.escape);
-    errorDialog(keys.escape);
+    helpDialog(keys.escape && !openHelp_);
+    errorDialog(keys.escape && !openError_);
 }
 
 void Workspace::helpDialog(bool close) {

@@ -72,11 +72,11 @@ const Texture& FlowRunner::texture(const Flow& flow, PastImage image) const {
     return slot->texture;
 }
 
-const Program& FlowRunner::program(const Flow::PassNode& pass, bool masked) {
+const Program& FlowRunner::program(const Flow::PassNode& pass, const char* variant) {
     const ProgramKind kind = std::holds_alternative<Draw>(pass.work) ? ProgramKind::Raster : ProgramKind::Compute;
-    if (!masked) return programs_.get(kind, shaderOf(pass.work), definesOf(pass.work), pass.parameters);
+    if (!variant) return programs_.get(kind, shaderOf(pass.work), definesOf(pass.work), pass.parameters);
     Defines defines = definesOf(pass.work);
-    defines.push_back({"MASKED"});
+    defines.push_back({variant});
     return programs_.get(kind, shaderOf(pass.work), defines, pass.parameters);
 }
 
@@ -159,10 +159,8 @@ void FlowRunner::runDraw(const Flow& flow, const Flow::PassNode& pass, const Dra
         set(GL_SCISSOR_TEST, draw.border > 0);
         glScissor(draw.border, draw.border, std::max(extent.width - 2 * draw.border, 0),
                   std::max(extent.height - 2 * draw.border, 0));
-        const Program& opaque = this->program(pass);
-        const Program& masked = this->program(pass, true);
-        bindReads(flow, pass, opaque);
-        draw.geometry->draw(draw, opaque, masked);
+        bindReads(flow, pass, program(pass));
+        draw.geometry->draw(draw, {program(pass), program(pass, draw.textured ? "TEXTURED" : nullptr), program(pass, "MASKED")});
     }
     glBindFramebuffer(GL_DRAW_FRAMEBUFFER, 0);
     set(GL_SCISSOR_TEST, false);
@@ -175,7 +173,10 @@ void FlowRunner::run(const Flow& flow, Timing timing) {
     size_t uniformBytes = 0;
     for (const Flow::PassNode& pass : flow.passes()) {
         program(pass);
-        if (std::holds_alternative<Draw>(pass.work)) program(pass, true);
+        if (const Draw* draw = std::get_if<Draw>(&pass.work)) {
+            program(pass, "MASKED");
+            if (draw->textured) program(pass, "TEXTURED");
+        }
         uniformBytes += UniformRing::aligned(pass.constants.size()) +
                         UniformRing::aligned(pass.parameterBlock.size() * sizeof(uint32_t));
     }

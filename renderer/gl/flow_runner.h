@@ -41,7 +41,7 @@ private:
     int turnOf(const Flow::ImageNode& node) const;
     const Slot* find(int label, int turn) const;
     void allocate(const Flow& flow, int label, int turn, const ImageSpec& spec, bool clear);
-    const Program& program(const Flow::PassNode& pass, bool masked = false);
+    const Program& program(const Flow::PassNode& pass, const char* variant = nullptr); // with a define more
     void bindReads(const Flow& flow, const Flow::PassNode& pass, const Program& program);
     void runCompute(const Flow& flow, const Flow::PassNode& pass);
     void runDraw(const Flow& flow, const Flow::PassNode& pass, const Draw& draw);

@@ -11,9 +11,16 @@ namespace penumbra {
 // and finds the draw's matrices and material in the storage block `Draws` of shaders/draws.glsl.
 class Geometry {
 public:
+    // The variants of a pass's program: as it is; with TEXTURED defined, for base colours that have a texture (the same
+    // program where Draw::textured is off); with MASKED defined, which discards where the base colour's alpha is below
+    // the cutoff.
+    struct Programs {
+        const Program& plain;
+        const Program& textured;
+        const Program& masked;
+    };
     virtual ~Geometry() = default;
-    // `masked` is the same program with MASKED defined: it discards where the base colour's alpha is below the cutoff.
-    virtual void draw(const Draw& draw, const Program& opaque, const Program& masked) const = 0;
+    virtual void draw(const Draw& draw, const Programs& programs) const = 0;
 };
 
 } // namespace penumbra

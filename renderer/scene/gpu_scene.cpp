@@ -164,7 +164,7 @@ void GpuScene::update(const SceneState& state) {
     drawBuffer_.update(0, draws_.size() * sizeof(DrawData), draws_.data());
 }
 
-void GpuScene::draw(const Draw& draw, const Program& opaque, const Program& masked) const {
+void GpuScene::draw(const Draw& draw, const Programs& programs) const {
     glBindVertexArray(vertexArray_.get());
     glBindBufferBase(GL_SHADER_STORAGE_BUFFER, 0, drawBuffer_.name());
     glBindBuffer(GL_DRAW_INDIRECT_BUFFER, commands_.name());
@@ -173,6 +173,9 @@ void GpuScene::draw(const Draw& draw, const Program& opaque, const Program& mask
         for (const Program::Binding& sampler : program.samplers())
             if (sampler.name == textureSampler) return static_cast<int>(sampler.unit);
         return -1;
+    };
+    const auto programOf = [&](const Batch& batch) -> const Program& {
+        return batch.masked ? programs.masked : batch.texture >= 0 ? programs.textured : programs.plain;
     };
     const auto cull = [&](const Batch& batch) {
         const bool both = draw.faces == Faces::Both || (draw.faces == Faces::AsMaterial && batch.doubleSided);
@@ -183,7 +186,7 @@ void GpuScene::draw(const Draw& draw, const Program& opaque, const Program& mask
     // Batches that this pass cannot tell apart go in one call.
     for (size_t i = 0; i < batches_.size();) {
         const Batch& batch = batches_[i];
-        const Program& program = batch.masked ? masked : opaque;
+        const Program& program = programOf(batch);
         const int unit = textureUnit(program);
         size_t end = i;
         uint32_t commands = 0;

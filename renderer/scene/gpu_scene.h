@@ -17,7 +17,7 @@ public:
     explicit GpuScene(const SceneState& state);
     // Sends the matrices of the state if they changed.
     void update(const SceneState& state);
-    void draw(const Draw& draw, const Program& opaque, const Program& masked) const override;
+    void draw(const Draw& draw, const Programs& programs) const override;
 
 private:
     // As glMultiDrawElementsIndirect reads it.
@@ -29,7 +29,7 @@ private:
     // Neighbouring commands that may be drawn in one call for every purpose.
     struct Batch {
         uint32_t firstCommand, commandCount;
-        int texture; // of Scene::textures, -1: white
+        int texture; // of Scene::textures, -1: none
         bool masked, doubleSided, mirrored, casts;
     };
     struct DrawData { // shaders/draws.glsl
@@ -46,7 +46,7 @@ private:
     std::vector<DrawData> draws_; // one per command
     Buffer positions_, normals_, uvs_, indices_, drawIndices_, commands_, drawBuffer_;
     Handle<destroyVertexArray> vertexArray_;
-    std::vector<TextureHandle> textures_; // as Scene::textures, then white
+    std::vector<TextureHandle> textures_; // as Scene::textures, then a white one
     uint64_t sentVersion_ = 0;
     bool sentMotion_ = false; // the last matrices sent differ between frames
     uint32_t groundVertices_ = 0;

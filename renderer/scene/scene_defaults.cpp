@@ -123,12 +123,14 @@ Ground groundBelow(const Scene& scene, const Pose& pose) {
     return {.height = bounds.min.y, .centre = {centre.x, centre.z}, .halfSize = 3 * bounds.diagonal()};
 }
 
-// Looks for a floor: surfaces that face up in the lowest quarter of the scene and, seen from above, fill half of it.
+// Looks for a floor: surfaces that face up in the lowest quarter of the scene and, seen from above, fill half of it. What
+// stands tall on it throws its shadow beyond, so the scene must also be broad.
 bool wantsGround(const Scene& scene, const Pose& pose) {
     const Bounds bounds = worldBounds(scene, pose);
     if (bounds.empty()) return false;
     const glm::vec3 extent = bounds.extent();
-    if (!(extent.x > 0 && extent.z > 0)) return true;
+    constexpr float tallest = 0.6f; // of the smaller width
+    if (!(extent.y <= tallest * std::min(extent.x, extent.z))) return true;
 
     constexpr int cells = 24; // along each side of the bounds
     const float highest = bounds.min.y + 0.25f * extent.y;

@@ -5,7 +5,7 @@
 void main()
 {
     Receiver r = findReceiver(normalOffset);
-    Lookup l = makeLookup(r, depthBias, slopeBias, false);
+    Lookup l = makeLookup(r, depthBias, slopeBias, false, false);
     bool centreBelowHorizon = directional ? r.facing <= 0.0 : r.facing >= 0.0;
     writeShadow(r, centreBelowHorizon ? 1.0 : blocksAt(l, l.texel));
 }

@@ -62,6 +62,6 @@ float filtered(Lookup l, Receiver r)
 void main()
 {
     Receiver r = findReceiver(normalOffset);
-    Lookup l = makeLookup(r, depthBias, slopeBias, receiverPlane != 0);
+    Lookup l = makeLookup(r, depthBias, slopeBias, receiverPlane != 0, false);
     writeShadow(r, clamp(filtered(l, r), 0.0, 1.0));
 }

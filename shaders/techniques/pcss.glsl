@@ -14,7 +14,7 @@ vec2 tap(int i, int n, vec2 shift)
 void main()
 {
     Receiver r = findReceiver(normalOffset);
-    Lookup l = makeLookup(r, depthBias, slopeBias, receiverPlane != 0);
+    Lookup l = makeLookup(r, depthBias, slopeBias, receiverPlane != 0, true);
     vec2 shift = rotate != 0 ? pixelShift(vec2(r.pixel)) : vec2(0.0);
     vec2 halfLight = lightScale * lightView.light.xy;
     float f = lightView.sample_reference.z;

@@ -189,6 +189,8 @@ TEST_CASE("a ground is wanted where nothing lies below") {
     CHECK(wants(boxes({block, narrow})));
     CHECK_FALSE(wants(boxes({block, floor})));
     CHECK_FALSE(wants(Scene()));
+    const Bounds tower{glm::vec3(-0.5f, 0, -0.5f), glm::vec3(0.5f, 3, 0.5f)};
+    CHECK(wants(boxes({tower, floor}))); // its shadow falls beyond the floor
 
     // Of any size, mirrored (which turns the winding of what is seen), or lifted by its node.
     for (const float scale : {0.003f, 500.0f, -1.0f}) {

@@ -11,7 +11,7 @@ using namespace penumbra;
 
 namespace {
 
-constexpr float nan = std::numeric_limits<float>::quiet_NaN();
+constexpr float notANumber = std::numeric_limits<float>::quiet_NaN();
 constexpr float infinity = std::numeric_limits<float>::infinity();
 
 std::array<int, 4> at(const std::vector<uint8_t>& rgba, int width, int x, int y) {
@@ -27,7 +27,7 @@ TEST_CASE("the automatic range goes from the 1st to the 99th percentile of the f
     for (int i = 0; i < 1000 * 500; ++i) {
         const float uniform = std::uniform_real_distribution<float>(0, 100)(random);
         pixels.values.push_back(-1);
-        pixels.values.push_back(i % 50 == 0 ? nan : i % 51 == 0 ? infinity : uniform);
+        pixels.values.push_back(i % 50 == 0 ? notANumber : i % 51 == 0 ? infinity : uniform);
     }
     std::vector<float> scratch;
     const ValueRange range = quantileRange(pixels, 1, 0.01, 0.99, scratch);
@@ -37,7 +37,7 @@ TEST_CASE("the automatic range goes from the 1st to the 99th percentile of the f
 
 TEST_CASE("a range is never empty") {
     std::vector<float> scratch;
-    for (const float value : {0.0f, 3.0f, -2.0f, nan, infinity, 1e-30f}) {
+    for (const float value : {0.0f, 3.0f, -2.0f, notANumber, infinity, 1e-30f}) {
         const ValueRange range = quantileRange({2, 1, 1, {value, value}}, 0, 0.01, 0.99, scratch);
         CAPTURE(value);
         CHECK(range.min < range.max);
@@ -49,14 +49,14 @@ TEST_CASE("a range is never empty") {
 }
 
 TEST_CASE("texels that are no numbers are counted once each") {
-    const Renderer::Pixels pixels{2, 2, 2, {nan, nan, infinity, 1, nan, -infinity, 0, 0}};
+    const Renderer::Pixels pixels{2, 2, 2, {notANumber, notANumber, infinity, 1, notANumber, -infinity, 0, 0}};
     const BadTexels bad = countBadTexels(pixels);
     CHECK(bad.nan == 2);
     CHECK(bad.infinite == 2);
 }
 
 TEST_CASE("the view shows grey, colours, NaN, infinity and the outside apart") {
-    const Renderer::Pixels pixels{3, 2, 1, {0, 0.5f, 1, nan, infinity, 7}};
+    const Renderer::Pixels pixels{3, 2, 1, {0, 0.5f, 1, notANumber, infinity, 7}};
     std::vector<uint8_t> rgba;
     mapToRgba(pixels, {-1, 0, 1}, {0, 0, 0}, {0, 1}, 5, 2, rgba);
     CHECK(at(rgba, 5, 0, 0) == std::array{0, 0, 0, 0});
