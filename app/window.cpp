@@ -25,8 +25,9 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr float fontHeight = 15;         // pixels at 96 dots per inch
-constexpr double idleSeconds = 1.0 / 30; // how long a window with nothing to show waits for input
+constexpr float fontHeight = 15;    // pixels at 96 dots per inch
+constexpr double idleSeconds = 0.1; // how long a window with nothing to show waits for input
+constexpr int settlingFrames = 4;   // that ImGui needs to answer an input
 
 std::string& lastGlfwError() {
     static std::string text;
@@ -56,6 +57,8 @@ glm::ivec2 largestWindow() {
 struct Heard {
     Keys struck;
     std::vector<std::string> dropped;
+    std::vector<int> pressed;                        // keys that went down
+    std::vector<std::pair<int, int>> releasedAtOnce; // keys and modifiers that went down and up
 };
 
 class Window {
@@ -77,7 +80,6 @@ public:
         glfwMakeContextCurrent(window_);
         glfwSwapInterval(1);
         glfwSetWindowUserPointer(window_, &heard_);
-        glfwSetKeyCallback(window_, onKey);
         glfwSetDropCallback(window_, onDrop);
     }
     ~Window() { glfwDestroyWindow(window_); }
@@ -86,6 +88,8 @@ public:
     GLFWwindow* get() const { return window_; }
     bool open() const { return !glfwWindowShouldClose(window_); }
     Heard take() { return std::exchange(heard_, {}); }
+    // Hears keys before ImGui, which must have installed its callbacks already.
+    void hearKeys() { glfwSetKeyCallback(window_, onKey); }
 
     bool visible() const {
         const glm::ivec2 pixels = framebufferSize();
@@ -112,7 +116,8 @@ public:
 
 private:
     static Heard& heard(GLFWwindow* window) { return *static_cast<Heard*>(glfwGetWindowUserPointer(window)); }
-    static void onKey(GLFWwindow* window, int key, int, int action, int modifiers);
+    static void onKey(GLFWwindow* window, int key, int code, int action, int modifiers);
+    static void onStroke(GLFWwindow* window, int key, int modifiers);
     static void onDrop(GLFWwindow* window, int count, const char** paths) {
         for (int i = 0; i < count; ++i) heard(window).dropped.push_back(paths[i]);
     }
@@ -121,8 +126,21 @@ private:
     Heard heard_;
 };
 
-void Window::onKey(GLFWwindow* window, int key, int, int action, int modifiers) {
-    if (action != GLFW_PRESS) return;
+// ImGui 1.86 looks at which keys are down once a frame: a key that went down and up within a slow frame would be lost,
+// so that its release is told a frame later.
+void Window::onKey(GLFWwindow* window, int key, int code, int action, int modifiers) {
+    std::vector<int>& pressed = heard(window).pressed;
+    if (action == GLFW_PRESS) {
+        pressed.push_back(key);
+        onStroke(window, key, modifiers);
+    }
+    if (action == GLFW_RELEASE && std::find(pressed.begin(), pressed.end(), key) != pressed.end())
+        heard(window).releasedAtOnce.push_back({key, modifiers});
+    else
+        ImGui_ImplGlfw_KeyCallback(window, key, code, action, modifiers);
+}
+
+void Window::onStroke(GLFWwindow* window, int key, int modifiers) {
     Keys& struck = heard(window).struck;
     const bool control = modifiers & GLFW_MOD_CONTROL;
     if (key == GLFW_KEY_ESCAPE) struck.escape = true;
@@ -165,6 +183,7 @@ public:
         ImGui::CreateContext();
         ImGui::GetIO().IniFilename = nullptr; // written by keepLayout, as a whole
         ImGui_ImplGlfw_InitForOpenGL(window.get(), true);
+        window.hearKeys();
         ImGui_ImplOpenGL3_Init("#version 450 core");
         std::error_code ignored;
         if (const fs::path file = layoutFile(); fs::is_regular_file(file, ignored)) try {
@@ -289,15 +308,20 @@ int runWindow(Session& session, const WindowOptions& options) {
 
     std::shared_ptr<const Scene> titled = session.scene;
     auto last = std::chrono::steady_clock::now();
+    int framesAfterInput = settlingFrames;
     while (window.open()) {
         if (!window.visible()) {
             glfwWaitEvents();
             continue;
         }
-        if (workspace.moving())
+        if (workspace.moving() || framesAfterInput > 0) {
             glfwPollEvents();
-        else
+            framesAfterInput = std::max(framesAfterInput - 1, 0);
+        } else {
+            const double start = glfwGetTime();
             glfwWaitEventsTimeout(idleSeconds);
+            if (glfwGetTime() - start < idleSeconds) framesAfterInput = settlingFrames;
+        }
         if (!window.visible()) continue;
         const auto now = std::chrono::steady_clock::now();
         const float seconds = std::chrono::duration<float>(now - last).count();
@@ -309,6 +333,8 @@ int runWindow(Session& session, const WindowOptions& options) {
         gui.begin();
         workspace.draw(keysOf(window, heard.struck), seconds, window.pixelsPerUnit());
         gui.end();
+        for (const auto& [key, modifiers] : heard.releasedAtOnce)
+            ImGui_ImplGlfw_KeyCallback(window.get(), key, glfwGetKeyScancode(key), GLFW_RELEASE, modifiers);
         glfwSwapBuffers(window.get());
         if (titled != session.scene) {
             titled = session.scene;

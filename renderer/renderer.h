@@ -45,6 +45,7 @@ public:
     // Recompiles shaders whose files changed on disk; call now and then. Errors stay until mended, one text each with
     // our file and line; the last good program runs on meanwhile.
     const std::vector<std::string>& pollShaders() { return programs_.poll(); }
+    uint64_t shaderGeneration() const { return programs_.generation(); }
     bool softwareRenderer() const { return software_; }
     const std::string& driver() const { return driver_; } // "llvmpipe (...), Mesa ..."
 

@@ -70,15 +70,14 @@ void main()
 #ifdef MASKED
     if (base.a < emissive_cutoff.w) discard;
 #endif
+    // Directions only: the octahedron needs no unit length.
     vec3 towardsEye = view.eyeWorld.xyz - positionWorld;
     vec3 geometric = cross(dFdx(positionWorld), dFdy(positionWorld));
-    float area = dot(geometric, geometric);
-    geometric = area > 0.0 ? geometric * inversesqrt(area) : normalize(towardsEye); // needle triangles have no derivative
-    if (dot(geometric, towardsEye) < 0.0) geometric = -geometric;
-    float size = dot(normalWorld, normalWorld);
-    vec3 shading = size > 0.0 ? normalWorld * inversesqrt(size) : geometric;
-    if (dot(shading, geometric) < 0.0) shading = -shading;
-    normal = vec4(octahedralFromUnit(geometric), octahedralFromUnit(shading));
+    if (dot(abs(geometric), vec3(1.0)) == 0.0) geometric = towardsEye; // needle triangles have no derivative
+    geometric *= dot(geometric, towardsEye) < 0.0 ? -1.0 : 1.0;
+    vec3 shading = normalWorld * (dot(normalWorld, geometric) < 0.0 ? -1.0 : 1.0);
+    if (dot(abs(shading), vec3(1.0)) == 0.0) shading = geometric;
+    normal = vec4(octahedralFromDirection(geometric), octahedralFromDirection(shading));
     depth = 1.0 / gl_FragCoord.w; // clip w is the eye depth
 #ifdef COLOUR
     colour = vec4(base.rgb, 1.0) + vec4(emissive_cutoff.xyz, 0.0);

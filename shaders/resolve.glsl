@@ -18,7 +18,9 @@ uniform sampler2D depth;  // eye depth [m], 0: no surface
 uniform sampler2D normal; // xy geometric normal, world, octahedral
 uniform writeonly image2D shadow;
 
-const bool directional = DIRECTIONAL != 0; // a define: software renderers run both sides of a branch
+// Defines, not flags: software renderers run both sides of a branch.
+const bool directional = DIRECTIONAL != 0;
+const bool roundLight = ROUND != 0; // a disk, or directional
 
 // A surface point in the coordinates of the shadow map.
 struct Receiver {
@@ -35,7 +37,7 @@ struct Receiver {
 bool lightBelowHorizon(vec3 positionLight, vec3 n)
 {
     vec2 s = lightView.light.xy;
-    float spread = lightView.light.w != 0.0 ? length(n.xy * s) : dot(abs(n.xy), s); // disk or rectangle
+    float spread = roundLight ? length(n.xy * s) : dot(abs(n.xy), s); // disk or rectangle
     return directional ? n.z + spread <= 0.0 : spread - dot(n, positionLight) <= 0.0;
 }
 

@@ -56,17 +56,15 @@ float blocks(Lookup l, float z, vec2 delta)
     return z < 1.0 && stored * (1.0 + max(change, l.farthest)) < l.compared ? 1.0 : 0.0;
 }
 
-// The stored depth of the texel at `place` [texels]; outside the map its empty border answers.
-float storedDepth(ivec2 place)
-{
-    return texelFetch(shadowMap, clamp(place, ivec2(0), ivec2(int(lightView.light.z) - 1)), 0).x;
-}
+// The stored depth of the texel whose lower left corner is `corner` [texels]. The sampler clamps to the edge: outside the
+// map its empty border answers.
+float storedDepth(vec2 corner) { return textureLod(shadowMap, (corner + 0.5) * lightView.light.w, 0.0).x; }
 
 // Of the texel that contains `place` [texels].
 float blocksAt(Lookup l, vec2 place)
 {
     vec2 corner = floor(place);
-    return blocks(l, storedDepth(ivec2(corner)), corner + 0.5 - l.texel);
+    return blocks(l, storedDepth(corner), corner + 0.5 - l.texel);
 }
 
 // Bilinear over the comparisons of the four texels around `place`, what a comparing sampler does.
@@ -74,11 +72,10 @@ float blocksBilinear(Lookup l, vec2 place)
 {
     vec2 corner = floor(place - 0.5);
     vec2 f = place - 0.5 - corner;
-    ivec2 c = ivec2(corner);
     vec2 delta = corner + 0.5 - l.texel;
-    float b00 = blocks(l, storedDepth(c), delta);
-    float b10 = blocks(l, storedDepth(c + ivec2(1, 0)), delta + vec2(1.0, 0.0));
-    float b01 = blocks(l, storedDepth(c + ivec2(0, 1)), delta + vec2(0.0, 1.0));
-    float b11 = blocks(l, storedDepth(c + ivec2(1, 1)), delta + vec2(1.0, 1.0));
+    float b00 = blocks(l, storedDepth(corner), delta);
+    float b10 = blocks(l, storedDepth(corner + vec2(1, 0)), delta + vec2(1, 0));
+    float b01 = blocks(l, storedDepth(corner + vec2(0, 1)), delta + vec2(0, 1));
+    float b11 = blocks(l, storedDepth(corner + vec2(1, 1)), delta + vec2(1, 1));
     return mix(mix(b00, b10, f.x), mix(b01, b11, f.x), f.y);
 }

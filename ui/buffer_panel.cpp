@@ -130,9 +130,9 @@ void BufferPanel::updateRange(const ImageSpec& spec) {
 void BufferPanel::controls(const Flow& flow, const ImageSpec& spec) {
     const FormatInfo& format = info(spec.format);
     wrappedText(picked_);
-    text(colour::muted, ShortText("{}  {}", extentText(spec.extent).view(), format.name).view());
-    ImGui::SameLine();
-    text(colour::muted, bytesText(spec.bytes()).view());
+    wrappedText(
+        colour::muted,
+        ShortText("{}  {}  {}", extentText(spec.extent).view(), format.name, bytesText(spec.bytes()).view()).view());
     if (flow.find(picked_) && flow.node(*flow.find(picked_)).kept) text(colour::muted, "kept for the next frame");
     if (bad_.nan || bad_.infinite)
         wrappedText(colour::error,
@@ -179,7 +179,7 @@ void BufferPanel::controls(const Flow& flow, const ImageSpec& spec) {
     }
     ValueRange edited = range_;
     const float speed = 0.002f * std::min(range_.max - range_.min, 1e30f);
-    row("Black, white");
+    row("Limits");
     if (ImGui::DragFloat2("##ends", &edited.min, speed, 0, 0, "%.4g") && std::isfinite(edited.min) &&
         std::isfinite(edited.max) && edited.min < edited.max) {
         mode_ = RangeMode::Typed;

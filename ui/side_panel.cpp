@@ -278,7 +278,7 @@ void displayControls(DisplaySettings& display) {
     tooltip("The scene in its light (V)");
     ImGui::SameLine();
     if (ImGui::RadioButton("shadow  ψ", display.show == Show::Shadow)) display.show = Show::Shadow;
-    tooltip("The shadow image: black sees all of the light, white none of it (V)");
+    tooltip("The shadow image as a picture: white sees all of the light, black none of it (V)");
     row("Exposure");
     dragNumber("##exposure", display.exposure, 0.02f, limits::exposure, "%+.2f stops");
     row("Ambient");

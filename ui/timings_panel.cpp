@@ -81,7 +81,9 @@ void TimingsPanel::forget() {
 void TimingsPanel::draw(const Renderer& renderer, bool approximate) const {
     text(colour::muted,
          ShortText("Median of the last 60 frames{}  {}", approximate ? ", approximate" : "", renderer.driver()).view());
-    const float share = 0.44f * (ImGui::GetContentRegionAvail().x - ImGui::GetStyle().ItemSpacing.x);
+    // Names are long: where there is little room, the passes get more of it, and the images say less.
+    const float width = ImGui::GetContentRegionAvail().x;
+    const float share = (width > 50 * ImGui::GetFontSize() ? 0.44f : 0.54f) * width;
     ImGui::BeginChild("times", {share, 0});
     passTable(renderer.flow());
     ImGui::EndChild();
@@ -94,7 +96,7 @@ void TimingsPanel::draw(const Renderer& renderer, bool approximate) const {
 void TimingsPanel::passTable(const Flow& flow) const {
     if (!ImGui::BeginTable("passes", 3, tableFlags)) return;
     ImGui::TableSetupColumn("Pass", ImGuiTableColumnFlags_WidthStretch);
-    numberColumns(5, {"ms", "%"});
+    numberColumns(4, {"ms", "%"});
     ImGui::TableSetupScrollFreeze(0, 1);
     headers({"Pass", "ms", "% frame"});
     const double frame = frame_.median();
@@ -119,22 +121,29 @@ void TimingsPanel::passTable(const Flow& flow) const {
 }
 
 void imageTable(const Flow& flow) {
-    if (!ImGui::BeginTable("images", 4, tableFlags)) return;
+    // A narrow table keeps names and bytes; size and format are in the tooltip.
+    const bool wide = ImGui::GetContentRegionAvail().x > 27 * ImGui::GetFontSize();
+    if (!ImGui::BeginTable("images", wide ? 4 : 2, tableFlags)) return;
     ImGui::TableSetupColumn("Image", ImGuiTableColumnFlags_WidthStretch);
-    numberColumns(6, {"Size"});
-    numberColumns(7.5f, {"Format"});
+    if (wide) numberColumns(6, {"Size"});
+    if (wide) numberColumns(7.5f, {"Format"});
     numberColumns(4.5f, {"Memory"});
     ImGui::TableSetupScrollFreeze(0, 1);
-    headers({"Image", "Size", "Format", "Memory"});
-    const auto line = [](std::string_view name, std::string_view size, std::string_view format, uint64_t bytes) {
+    if (wide)
+        headers({"Image", "Size", "Format", "Memory"});
+    else
+        headers({"Image", "Memory"});
+    const auto line = [&](std::string_view name, std::string_view size, std::string_view format, uint64_t bytes) {
         ImGui::TableNextRow();
         ImGui::TableNextColumn();
         text(name);
-        tooltip(name); // the column may be too narrow for it
-        ImGui::TableNextColumn();
-        rightText(size);
-        ImGui::TableNextColumn();
-        rightText(format);
+        tooltip(ShortText("{}  {}  {}", name, size, format).view());
+        if (wide) {
+            ImGui::TableNextColumn();
+            rightText(size);
+            ImGui::TableNextColumn();
+            rightText(format);
+        }
         ImGui::TableNextColumn();
         rightText(bytesText(bytes).view());
     };

@@ -35,6 +35,7 @@ void Viewport::draw(Session& session, Renderer& renderer, const SceneFacts& fact
                            ImGuiButtonFlags_MouseButtonLeft | ImGuiButtonFlags_MouseButtonMiddle |
                                ImGuiButtonFlags_MouseButtonRight);
     navigate(session, facts, keys, seconds, size);
+    const std::vector<std::string>& shaderErrors = renderer.pollShaders();
     render(session, renderer, timing, always);
     // OpenGL's first row is the lowest.
     if (renderer.hasFrame())
@@ -42,7 +43,7 @@ void Viewport::draw(Session& session, Renderer& renderer, const SceneFacts& fact
             textureId(renderer.runner().texture(renderer.flow(), renderer.display()).name()), corner,
             {corner.x + size.x, corner.y + size.y}, {0, 1}, {1, 0});
     if (showLight || keys.light || drag_ == Drag::Light) drawLight(session, corner, size);
-    drawTroubles(renderer, corner, size);
+    drawTroubles(shaderErrors, corner, size);
 }
 
 void Viewport::navigate(Session& session, const SceneFacts& facts, const Keys& keys, float seconds, ImVec2 size) {
@@ -83,7 +84,7 @@ void Viewport::navigate(Session& session, const SceneFacts& facts, const Keys& k
 }
 
 // Equal fingerprints give equal pictures, but for history.
-void Viewport::fingerprint(const Session& session) {
+void Viewport::fingerprint(const Session& session, const Renderer& renderer) {
     now_.clear();
     const Scene* scene = session.scene.get();
     const Card* card = &session.techniques.card();
@@ -96,11 +97,12 @@ void Viewport::fingerprint(const Session& session) {
     append(now_, session.time);
     append(now_, session.size);
     append(now_, session.seed);
+    append(now_, renderer.shaderGeneration());
     now_.push_back(session.ground);
 }
 
 void Viewport::render(Session& session, Renderer& renderer, Timing timing, bool always) {
-    fingerprint(session);
+    fingerprint(session, renderer);
     const bool changed = now_ != drawn_ || restart_;
     // A few frames more until the timer queries of the last change have come in, unless frames are dear.
     const bool settling = frames_ < settledFrame_ && renderer.runner().timer().frameMilliseconds() < dearFrame;
@@ -154,7 +156,7 @@ void Viewport::drawLight(const Session& session, ImVec2 corner, ImVec2 size) con
     for (int i = 0; i < corners; ++i) line(edge(i), edge(i + 1));
 }
 
-void Viewport::drawTroubles(Renderer& renderer, ImVec2 corner, ImVec2 size) {
+void Viewport::drawTroubles(const std::vector<std::string>& shaderErrors, ImVec2 corner, ImVec2 size) const {
     const float padding = 0.6f * ImGui::GetFontSize(), width = std::max(size.x - 4 * padding, 1.0f);
     float y = corner.y + padding;
     const auto banner = [&](const std::string& message) {
@@ -170,7 +172,7 @@ void Viewport::drawTroubles(Renderer& renderer, ImVec2 corner, ImVec2 size) {
         y += extent.y + 2 * padding;
     };
     if (!trouble_.empty()) banner(trouble_);
-    for (const std::string& error : renderer.pollShaders())
+    for (const std::string& error : shaderErrors)
         if (error != trouble_) banner(error);
 }
 

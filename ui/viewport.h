@@ -33,8 +33,8 @@ private:
     void navigate(Session& session, const SceneFacts& facts, const Keys& keys, float seconds, ImVec2 size);
     void render(Session& session, Renderer& renderer, Timing timing, bool always);
     void drawLight(const Session& session, ImVec2 corner, ImVec2 size) const;
-    void drawTroubles(Renderer& renderer, ImVec2 corner, ImVec2 size);
-    void fingerprint(const Session& session);
+    void drawTroubles(const std::vector<std::string>& shaderErrors, ImVec2 corner, ImVec2 size) const;
+    void fingerprint(const Session& session, const Renderer& renderer);
 
     Drag drag_ = Drag::None;
     float flySpeed_ = 0.2f; // scene sizes per second

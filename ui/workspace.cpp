@@ -10,10 +10,13 @@ namespace {
 constexpr ImGuiWindowFlags fixedWindow = ImGuiWindowFlags_NoTitleBar | ImGuiWindowFlags_NoResize |
                                          ImGuiWindowFlags_NoMove | ImGuiWindowFlags_NoSavedSettings |
                                          ImGuiWindowFlags_NoBringToFrontOnFocus;
-constexpr float sideWidth = 27;      // in font heights
-constexpr float lowestDrawer = 8;    // in font heights
-constexpr double step = 1.0 / 60;    // of time, by the step button [s]
-constexpr float longestFrame = 0.1f; // [s]; after a pause of the program time does not jump further
+// In font heights:
+constexpr float sideWidth = 27;
+constexpr float narrowWidth = 64;
+constexpr float lowestDrawer = 8;
+constexpr float firstDrawer = 19;
+constexpr double step = 1.0 / 60;     // of time, by the step button [s]
+constexpr float longestFrame = 0.25f; // [s]; after a pause of the program time does not jump further
 
 bool beginFixed(const char* name, ImVec2 corner, ImVec2 size, ImGuiWindowFlags flags = 0) {
     ImGui::SetNextWindowPos(corner);
@@ -63,7 +66,8 @@ void Workspace::say(std::string message) {
 }
 
 bool Workspace::moving() const {
-    return viewport_.renderedNow() || pendingScene_ || playback_.playing || drawer_ == Drawer::Timings;
+    return viewport_.renderedNow() || pendingScene_ || playback_.playing || messageSeconds_ > 0 ||
+           drawer_ == Drawer::Timings;
 }
 
 Timing Workspace::timing() const {
@@ -77,15 +81,21 @@ void Workspace::draw(const Keys& keys, float seconds, float pixelsPerUnit) {
 
     const ImVec2 screen = ImGui::GetIO().DisplaySize;
     const float em = ImGui::GetFontSize();
-    const float side = std::min(sideWidth * em, 0.6f * screen.x), left = screen.x - side;
     const float barHeight = ImGui::GetFrameHeight() + 2 * ImGui::GetStyle().FramePadding.y;
-    const float highest = std::max(0.75f * (screen.y - barHeight), 1.0f);
-    const float drawerHeight = drawer_ == Drawer::Closed ? 0 : std::min(drawerHeight_ * em, highest);
-    const float viewHeight = screen.y - barHeight - drawerHeight;
+    const float side = std::min(sideWidth * em, 0.5f * screen.x), left = screen.x - side;
+    const float below = std::max(screen.y - barHeight, 1.0f), highest = 0.75f * below;
+    // In a narrow window the drawer runs below the side panel too.
+    const bool narrow = screen.x < narrowWidth * em;
+    float drawerHeight = 0;
+    if (drawer_ != Drawer::Closed)
+        drawerHeight =
+            std::min(drawerHeight_ ? *drawerHeight_ * em : std::min(firstDrawer * em, 0.5f * below), highest);
+    const float viewHeight = below - drawerHeight, sideHeight = narrow ? viewHeight : below;
+    const float drawerWidth = narrow ? screen.x : left;
 
-    bar({left, barHeight});
+    bar({screen.x, barHeight});
     Requests requests;
-    if (beginFixed("side", {left, 0}, {side, screen.y}, ImGuiWindowFlags_AlwaysVerticalScrollbar))
+    if (beginFixed("side", {left, barHeight}, {side, sideHeight}, ImGuiWindowFlags_AlwaysVerticalScrollbar))
         requests = side_.draw(session_, facts_, playback_);
     ImGui::End();
 
@@ -106,9 +116,9 @@ void Workspace::draw(const Keys& keys, float seconds, float pixelsPerUnit) {
     }
 
     if (drawer_ != Drawer::Closed) {
-        if (beginFixed("drawer", {0, screen.y - drawerHeight}, {left, drawerHeight},
+        if (beginFixed("drawer", {0, screen.y - drawerHeight}, {drawerWidth, drawerHeight},
                        ImGuiWindowFlags_NoScrollbar | ImGuiWindowFlags_NoScrollWithMouse)) {
-            splitter({0, screen.y - drawerHeight}, left, highest / em);
+            splitter({0, screen.y - drawerHeight}, drawerWidth, drawerHeight / em, highest / em);
             drawer(pixelsPerUnit);
         }
         ImGui::End();
@@ -181,15 +191,14 @@ void Workspace::status() {
                         : "The view's pixels and the frame's time on the renderer");
 }
 
-void Workspace::splitter(ImVec2 corner, float width, float highest) {
+void Workspace::splitter(ImVec2 corner, float width, float height, float highest) {
     const float em = ImGui::GetFontSize(), thickness = 0.5f * em;
     const ImVec2 contentStart = ImGui::GetCursorPos();
     ImGui::SetCursorScreenPos(corner);
     ImGui::InvisibleButton("splitter", {std::max(width, 1.0f), thickness});
     const bool grabbed = ImGui::IsItemActive();
     if (grabbed)
-        drawerHeight_ =
-            std::clamp(drawerHeight_ - ImGui::GetIO().MouseDelta.y / em, lowestDrawer, std::max(highest, lowestDrawer));
+        drawerHeight_ = std::clamp(height - ImGui::GetIO().MouseDelta.y / em, std::min(lowestDrawer, highest), highest);
     if (grabbed || ImGui::IsItemHovered()) ImGui::SetMouseCursor(ImGuiMouseCursor_ResizeNS);
     ImGui::GetWindowDrawList()->AddLine(corner, {corner.x + width, corner.y},
                                         ImGui::GetColorU32(grabbed ? ImGuiCol_SeparatorActive : ImGuiCol_Separator),

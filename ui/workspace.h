@@ -43,7 +43,7 @@ private:
     void bar(ImVec2 size);
     void status();
     void drawer(float pixelsPerUnit);
-    void splitter(ImVec2 corner, float width, float highest);
+    void splitter(ImVec2 corner, float width, float height, float highest);
     void carryOut(Requests& requests);
     void openPending();
     void takePicture();
@@ -69,8 +69,8 @@ private:
     FileChooser chooser_;
 
     Drawer drawer_ = Drawer::Closed;
-    float drawerHeight_ = 19;     // in font heights
-    const Card* timed_ = nullptr; // whose times the timings panel has gathered, and how
+    std::optional<float> drawerHeight_; // in font heights, once it was dragged
+    const Card* timed_ = nullptr;       // whose times the timings panel has gathered, and how
     Timing timedHow_ = Timing::Off;
 
     std::optional<std::string> pendingScene_;

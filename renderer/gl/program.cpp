@@ -219,6 +219,7 @@ const std::vector<std::string>& ProgramLibrary::poll() {
         }
     }
     if (!changed) return errors_;
+    ++generation_;
     errors_.clear();
     for (const auto& entry : entries_)
         if (!entry->error.empty() && std::find(errors_.begin(), errors_.end(), entry->error) == errors_.end())

@@ -62,6 +62,8 @@ public:
     // Recompiles what changed on disk since; looks at most twice a second. Returns the errors of files whose newest
     // text does not compile, one text each.
     const std::vector<std::string>& poll();
+    // How often poll() has recompiled something: another number, another picture.
+    uint64_t generation() const { return generation_; }
 
 private:
     struct File {
@@ -85,6 +87,7 @@ private:
     std::vector<std::unique_ptr<Entry>> entries_;
     std::vector<std::string> errors_;
     std::chrono::steady_clock::time_point lastPoll_{};
+    uint64_t generation_ = 0;
 };
 
 } // namespace penumbra

@@ -191,7 +191,7 @@ void GpuScene::draw(const Draw& draw, const Programs& programs) const {
         size_t end = i;
         uint32_t commands = 0;
         const auto alike = [&](const Batch& other) {
-            return other.casts == batch.casts && other.masked == batch.masked &&
+            return other.casts == batch.casts && &programOf(other) == &program &&
                    (unit < 0 || other.texture == batch.texture) &&
                    (draw.faces == Faces::Both ||
                     (other.doubleSided == batch.doubleSided && other.mirrored == batch.mirrored));

@@ -137,7 +137,7 @@ LightViewBlock lightView(const Inputs& inputs, LightSample s, int size) {
     block.sample_reference = {s, f, directional ? 1.0f : 0.0f};
     block.window = {centre, h, h};
     block.range = {fit.near, fit.far, 1 / (fit.far - fit.near), 0};
-    block.light = {half, size, light.shape == LightShape::Rectangle ? 0.0f : 1.0f};
+    block.light = {half, size, 1.0f / static_cast<float>(size)};
     return block;
 }
 
@@ -176,7 +176,9 @@ ResolveConstants resolveConstants(const Inputs& inputs, const LightViewBlock& li
 
 Image resolve(Flow& flow, Scope scope, const Inputs& inputs, const Resolver& resolver, std::initializer_list<Read> reads,
               const ParameterSet& parameters) {
-    Compute work{resolver.shader, {{"DIRECTIONAL", inputs.light.shape == LightShape::Directional ? 1 : 0}}};
+    Compute work{resolver.shader,
+                 {{"DIRECTIONAL", inputs.light.shape == LightShape::Directional ? 1 : 0},
+                  {"ROUND", inputs.light.shape == LightShape::Rectangle ? 0 : 1}}};
     if (resolver.table > 0) work.defines.push_back({"TABLE", resolver.table});
     PassSpec pass{.stage = Stage::Resolve,
                   .name = "resolve",

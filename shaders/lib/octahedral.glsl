@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: MIT
-// Unit vectors on the octahedron, unfolded to [−1, 1]² (Meyer et al. 2010): two numbers, evenly precise.
+// Directions on the octahedron, unfolded to [−1, 1]² (Meyer et al. 2010): two numbers, evenly precise.
 
-vec2 octahedralFromUnit(vec3 v)
+// v of any length but zero.
+vec2 octahedralFromDirection(vec3 v)
 {
     float scale = 1.0f / (abs(v.x) + abs(v.y) + abs(v.z));
     vec2 p = vec2(v.x * scale, v.y * scale);

@@ -27,5 +27,5 @@ struct LightViewBlock {
     vec4 sample_reference; // xy = s, z = f [m], w = 1 for a directional light, else 0
     vec4 window;           // xy centre, zw half size, on the reference plane [m]
     vec4 range;            // x = near, y = far [m], z = 1 / (far − near) [1/m], w = 1 if the metric is radial
-    vec4 light;            // xy half size of the light [m, or tangent], z = texels along a side, w = 1 for a disk
+    vec4 light;            // xy half size of the light [m, or tangent], z = texels along a side, w = 1 / z
 };

@@ -38,7 +38,6 @@ float filtered(Lookup l, Receiver r)
     int n = kernel;
 #endif
     int rows = r.known < 0.0 ? n : 0;
-    ivec2 first = ivec2(corner);
     vec2 delta = corner + 0.5 - l.texel;
     float sum = 0.0;
     float before_y = 0.0;
@@ -48,7 +47,7 @@ float filtered(Lookup l, Receiver r)
         float before_x = 0.0;
         for (int x = 0; x < n; ++x) {
             float w_x = x < kernel ? entry(x) : 0.0;
-            float z = storedDepth(first + ivec2(x, y));
+            float z = storedDepth(corner + vec2(x, y));
             row += mix(w_x, before_x, f.x) * blocks(l, z, delta + vec2(x, y));
             before_x = w_x;
         }

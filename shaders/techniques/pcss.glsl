@@ -3,12 +3,32 @@
 #include "shadow_lookup.glsl"
 #include "lib/sampling.glsl"
 
-bool disk = lightView.light.w != 0.0;
+// Walks the taps of a region: the square [−1, 1]² or, for round lights, the disk in it.
+struct Taps {
+    vec2 state;
+    vec2 offset;
+};
 
-// i-th of n points of the square [−1, 1]² or, for disks, of the disk in it.
-vec2 tap(int i, int n, vec2 shift)
+Taps firstTap(vec2 shift)
 {
-    return disk ? vogelDisk(i, n, 6.2831853 * shift.x) : 2.0 * shifted(hammersley(i, n), shift) - 1.0;
+#if ROUND
+    float angle = 6.2831853 * shift.x;
+    return Taps(vec2(cos(angle), sin(angle)), vec2(0.0));
+#else
+    return Taps(shift, vec2(0.0));
+#endif
+}
+
+Taps nextTap(Taps t, int i, int n)
+{
+#if ROUND
+    t.state = spiralNext(t.state);
+    t.offset = spiralPoint(t.state, i, n);
+#else
+    t.state = latticeNext(t.state, n);
+    t.offset = 2.0 * t.state - 1.0;
+#endif
+    return t;
 }
 
 void main()
@@ -26,9 +46,11 @@ void main()
     int searched = r.known < 0.0 ? searchTaps : 0;
     float depths = 0.0;
     float blockers = 0.0;
+    Taps t = firstTap(shift);
     for (int i = 0; i < searched; ++i) {
-        vec2 corner = floor(l.texel + search * tap(i, searchTaps, shift));
-        float z = storedDepth(ivec2(corner));
+        t = nextTap(t, i, searchTaps);
+        vec2 corner = floor(l.texel + search * t.offset);
+        float z = storedDepth(corner);
         float b = blocks(l, z, corner + 0.5 - l.texel);
         depths += b * z;
         blockers += b;
@@ -37,6 +59,10 @@ void main()
     vec2 penumbra = max(penumbraHalfSize(halfLight, r.d, d_b, f, directional) * texelsPerMetre, smallest);
     int filtered = blockers > 0.0 ? filterTaps : 0;
     float sum = 0.0;
-    for (int i = 0; i < filtered; ++i) sum += blocksAt(l, l.texel + penumbra * tap(i, filterTaps, shift));
+    t = firstTap(shift);
+    for (int i = 0; i < filtered; ++i) {
+        t = nextTap(t, i, filterTaps);
+        sum += blocksAt(l, l.texel + penumbra * t.offset);
+    }
     writeShadow(r, sum / float(filterTaps));
 }

@@ -27,6 +27,7 @@ unset WAYLAND_DISPLAY
 Xvfb -displayfd 1 -screen 0 1280x720x24 -nolisten tcp >"$folder/display" 2>/dev/null & server=$!
 for _ in $(seq 200); do grep -q '^[0-9]' "$folder/display" && break; sleep 0.1; done
 export DISPLAY=:$(head -n 1 "$folder/display")
+xdotool getdisplaygeometry >/dev/null || { echo "left out: no virtual screen"; exit 77; }
 
 window=
 start() {
