@@ -22,6 +22,7 @@ struct GeometryBuffer {
 struct Occluder {
     Bounds boundsWorld;
     bool casts = true;
+    bool closed = false; // a closed surface; see scene/closed_surface.h
 };
 
 struct Inputs {

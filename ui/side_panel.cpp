@@ -12,7 +12,7 @@ namespace {
 
 // A printf format that shows a thousandth of the scene's size.
 ShortText metreFormat(float sceneSize) {
-    const int digits = std::clamp(3 - static_cast<int>(std::floor(std::log10(sceneSize))), 0, 6);
+    const int digits = std::clamp(3 - static_cast<int>(std::floor(std::log10(sceneSize))), 0, 5);
     return ShortText("%.{}f", digits);
 }
 

@@ -83,7 +83,9 @@ struct Compute {
     bool operator==(const Compute&) const = default;
 };
 
-enum class Faces : uint8_t { Both, Front, Back, AsMaterial }; // which faces are drawn; AsMaterial culls what glTF culls
+// Which faces are drawn. AsMaterial culls what glTF culls. Nearest draws both, but of closed surfaces only the front:
+// seen from outside them, as the pass must be, their back is never nearest.
+enum class Faces : uint8_t { Both, Front, Back, AsMaterial, Nearest };
 
 // Geometry through the rasteriser, onto all written images and a depth buffer of its own or the written depth image.
 // A colour image is cleared to `clear`, depth to 1.

@@ -12,7 +12,7 @@ Buffer::Buffer(std::string_view label, size_t bytes, const void* data, GLbitfiel
     GLuint name = 0;
     glCreateBuffers(1, &name);
     handle_ = Handle<destroy>(name);
-    glNamedBufferStorage(name, static_cast<GLsizeiptr>(std::max<size_t>(bytes, 16)), bytes ? data : nullptr, flags);
+    glNamedBufferStorage(name, static_cast<GLsizeiptr>(bytes ? bytes : 16), bytes ? data : nullptr, flags);
     if (glGetError() == GL_OUT_OF_MEMORY)
         throw InputError(std::string(label) + ": the driver has no memory for " + std::to_string(bytes) + " bytes");
     glObjectLabel(GL_BUFFER, name, static_cast<GLsizei>(label.size()), label.data());

@@ -81,11 +81,11 @@ GpuScene::GpuScene(const SceneState& state) {
         const Primitive& primitive = scene.meshes[d.mesh].primitives[d.primitive];
         const Material& material = scene.materials[static_cast<size_t>(primitive.material)];
         const bool mirrored = glm::determinant(glm::mat3(state.pose().worldFromNode[d.node])) < 0;
-        order.push_back({i, {0, 1, material.texture, material.masked, material.doubleSided, mirrored, true}});
+        order.push_back({i, {0, 1, material.texture, material.masked, material.doubleSided, mirrored, true, d.closed}});
     }
-    order.push_back({static_cast<uint32_t>(state.drawables().size()), {0, 1, -1, false, true, false, false}});
+    order.push_back({static_cast<uint32_t>(state.drawables().size()), {0, 1, -1, false, true, false, false, false}});
     const auto key = [](const Batch& b) {
-        return std::tuple(!b.casts, b.masked, b.texture, b.doubleSided, b.mirrored);
+        return std::tuple(!b.casts, b.masked, b.texture, b.closed, b.doubleSided, b.mirrored);
     };
     std::stable_sort(order.begin(), order.end(),
                      [&](const Keyed& a, const Keyed& b) { return key(a.batch) < key(b.batch); });
@@ -177,11 +177,13 @@ void GpuScene::draw(const Draw& draw, const Programs& programs) const {
     const auto programOf = [&](const Batch& batch) -> const Program& {
         return batch.masked ? programs.masked : batch.texture >= 0 ? programs.textured : programs.plain;
     };
-    const auto cull = [&](const Batch& batch) {
-        const bool both = draw.faces == Faces::Both || (draw.faces == Faces::AsMaterial && batch.doubleSided);
-        both ? glDisable(GL_CULL_FACE) : glEnable(GL_CULL_FACE);
-        glCullFace(draw.faces == Faces::Back ? GL_FRONT : GL_BACK);
-        glFrontFace(batch.mirrored ? GL_CW : GL_CCW);
+    const auto culls = [&](const Batch& batch) {
+        switch (draw.faces) {
+        case Faces::Both: return false;
+        case Faces::AsMaterial: return !batch.doubleSided;
+        case Faces::Nearest: return batch.closed;
+        default: return true;
+        }
     };
     // Batches that this pass cannot tell apart go in one call.
     for (size_t i = 0; i < batches_.size();) {
@@ -193,8 +195,7 @@ void GpuScene::draw(const Draw& draw, const Programs& programs) const {
         const auto alike = [&](const Batch& other) {
             return other.casts == batch.casts && &programOf(other) == &program &&
                    (unit < 0 || other.texture == batch.texture) &&
-                   (draw.faces == Faces::Both ||
-                    (other.doubleSided == batch.doubleSided && other.mirrored == batch.mirrored));
+                   culls(other) == culls(batch) && (!culls(batch) || other.mirrored == batch.mirrored);
         };
         for (; end < batches_.size() && alike(batches_[end]); ++end) commands += batches_[end].commandCount;
         i = end;
@@ -205,7 +206,9 @@ void GpuScene::draw(const Draw& draw, const Programs& programs) const {
             glBindTextureUnit(static_cast<GLuint>(unit), textures_[texture].get());
             glBindSampler(static_cast<GLuint>(unit), 0);
         }
-        cull(batch);
+        culls(batch) ? glEnable(GL_CULL_FACE) : glDisable(GL_CULL_FACE);
+        glCullFace(draw.faces == Faces::Back ? GL_FRONT : GL_BACK);
+        glFrontFace(batch.mirrored ? GL_CW : GL_CCW);
         glUseProgram(program.name());
         glMultiDrawElementsIndirect(
             GL_TRIANGLES, GL_UNSIGNED_INT,

@@ -30,7 +30,7 @@ private:
     struct Batch {
         uint32_t firstCommand, commandCount;
         int texture; // of Scene::textures, -1: none
-        bool masked, doubleSided, mirrored, casts;
+        bool masked, doubleSided, mirrored, casts, closed;
     };
     struct DrawData { // shaders/draws.glsl
         glm::mat4 worldFromModel, lastWorldFromModel;

@@ -1,17 +1,27 @@
 // SPDX-License-Identifier: MIT
 #include "renderer/scene/scene_state.h"
 
+#include "renderer/scene/closed_surface.h"
+
 namespace penumbra {
 
 void SceneState::setScene(std::shared_ptr<const Scene> scene) {
     scene_ = std::move(scene);
     drawables_.clear();
+    std::vector<std::vector<bool>> closed; // by mesh and primitive
+    for (const Mesh& mesh : scene_->meshes) {
+        closed.emplace_back();
+        for (const Primitive& primitive : mesh.primitives)
+            closed.back().push_back(!scene_->materials[static_cast<size_t>(primitive.material)].masked &&
+                                    isClosedSurface(*scene_, primitive));
+    }
     for (uint32_t n = 0; n < scene_->nodes.size(); ++n) {
         const Node& node = scene_->nodes[n];
         if (node.mesh < 0 || !node.visible) continue;
         const Mesh& mesh = scene_->meshes[static_cast<size_t>(node.mesh)];
         for (uint32_t p = 0; p < mesh.primitives.size(); ++p)
-            if (mesh.primitives[p].indexCount > 0) drawables_.push_back({n, static_cast<uint32_t>(node.mesh), p});
+            if (mesh.primitives[p].indexCount > 0) drawables_.push_back({n, static_cast<uint32_t>(node.mesh), p,
+                                                                         closed[static_cast<size_t>(node.mesh)][p]});
     }
     pose_ = lastPose_ = Pose();
     ground_.reset();
@@ -31,7 +41,7 @@ void SceneState::update(double seconds, bool ground) {
     bounds_ = Bounds();
     for (const Drawable& d : drawables_) {
         const Bounds& model = scene_->meshes[d.mesh].primitives[d.primitive].bounds;
-        occluders_.push_back({transformed(model, pose_.worldFromNode[d.node]), true});
+        occluders_.push_back({transformed(model, pose_.worldFromNode[d.node]), true, d.closed});
         bounds_.add(occluders_.back().boundsWorld);
     }
     // The ground belongs to the scene's rest pose: it does not move with an animation.
@@ -42,7 +52,7 @@ void SceneState::update(double seconds, bool ground) {
         const glm::vec2 low = ground_->centre - ground_->halfSize, high = ground_->centre + ground_->halfSize;
         plane.add({low.x, ground_->height, low.y});
         plane.add({high.x, ground_->height, high.y});
-        occluders_.push_back({plane, false});
+        occluders_.push_back({plane, false, false});
         bounds_.add(plane);
     }
 }

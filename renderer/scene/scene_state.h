@@ -12,6 +12,7 @@ namespace penumbra {
 // A primitive of a mesh, drawn by a node.
 struct Drawable {
     uint32_t node, mesh, primitive;
+    bool closed; // a closed surface without holes in its material
 };
 
 class SceneState {

@@ -141,6 +141,21 @@ LightViewBlock lightView(const Inputs& inputs, LightSample s, int size) {
     return block;
 }
 
+namespace {
+
+// Whether the point of the light lies outside the bounds of every closed surface, so that their backs are never nearest.
+bool seesFromOutside(const Inputs& inputs, const LightViewBlock& view) {
+    if (view.sample_reference.w != 0) return true;
+    const vec3 point = vec3(glm::inverse(view.lightFromWorld) * vec4(view.sample_reference.x, view.sample_reference.y, 0, 1));
+    return std::none_of(inputs.occluders.begin(), inputs.occluders.end(), [&](const Occluder& o) {
+        const float slack = 1e-4f * o.boundsWorld.diagonal();
+        return o.closed && glm::all(glm::greaterThanEqual(point, o.boundsWorld.min - slack)) &&
+               glm::all(glm::lessThanEqual(point, o.boundsWorld.max + slack));
+    });
+}
+
+} // namespace
+
 Image drawShadowMap(Flow& flow, Scope scope, const Inputs& inputs, const LightViewBlock& view, Faces faces) {
     static constexpr Channel channels[] = {
         {"depth", "z", "linear depth from the light, (d − near) / (far − near); 1: nothing casts", Unit::DepthRange, 0, 1}};
@@ -148,7 +163,7 @@ Image drawShadowMap(Flow& flow, Scope scope, const Inputs& inputs, const LightVi
     Draw draw{.shader = "shadow_map.glsl",
               .geometry = inputs.geometry,
               .poseVersion = inputs.poseVersion,
-              .faces = faces,
+              .faces = faces == Faces::Both && seesFromOutside(inputs, view) ? Faces::Nearest : faces,
               .castersOnly = true,
               .depthClamp = true,
               .border = borderTexels};

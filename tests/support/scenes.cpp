@@ -68,6 +68,22 @@ std::shared_ptr<const Scene> SceneBuilder::build() const {
     return scene;
 }
 
+SceneBuilder& SceneBuilder::twice() {
+    const size_t n = scene_.positions.size();
+    return triangle(scene_.positions[n - 3], scene_.positions[n - 2], scene_.positions[n - 1]);
+}
+
+std::shared_ptr<const Scene> SceneBuilder::merged() const {
+    auto scene = std::make_shared<Scene>(*build());
+    Primitive all{.indexCount = static_cast<uint32_t>(scene->indices.size()),
+                  .vertexCount = static_cast<uint32_t>(scene->positions.size())};
+    for (const glm::vec3 p : scene->positions) all.bounds.add(p);
+    for (uint32_t i = 0; i < all.indexCount; ++i) scene->indices[i] = i;
+    scene->meshes = {{"merged", {all}}};
+    scene->nodes.resize(1);
+    return scene;
+}
+
 Session session(std::shared_ptr<const Scene> scene, std::string_view technique) {
     Session s;
     s.scene = std::move(scene);

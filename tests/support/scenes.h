@@ -23,6 +23,10 @@ public:
     SceneBuilder& floor(float halfSize, float tiltDegrees = 0);
     SceneBuilder& triangle(glm::vec3 a, glm::vec3 b, glm::vec3 c);
     std::shared_ptr<const Scene> build() const;
+    // As one mesh of one primitive.
+    std::shared_ptr<const Scene> merged() const;
+    // The last triangle once more: nothing changes but that the surface is no longer closed.
+    SceneBuilder& twice();
 
 private:
     Scene scene_;
