@@ -23,21 +23,17 @@ out vec4 clip;
 #endif
 void main()
 {
-    mat4 worldFromModel = draws[drawIndex].worldFromModel;
-    vec4 world = worldFromModel * vec4(positionModel, 1.0);
-    positionWorld = world.xyz;
-    // Cofactors: normals stay normal under uneven and mirrored scale.
-    mat3 m = mat3(worldFromModel);
-    normalWorld = mat3(cross(m[1], m[2]), cross(m[2], m[0]), cross(m[0], m[1])) * normalModel;
-    gl_Position = view.clipFromWorld * world;
+    positionWorld = transformed(worldFromModel, positionModel);
+    normalWorld = transformedNormal(worldFromModel, normalModel);
+    gl_Position = view.clipFromWorld * vec4(positionWorld, 1.0);
 #if defined(TEXTURED) || defined(MASKED)
     uv = uvModel;
 #endif
-    baseColour = draws[drawIndex].baseColour;
-    emissive_cutoff = draws[drawIndex].emissive_cutoff;
+    baseColour = drawBaseColour;
+    emissive_cutoff = drawEmissiveCutoff;
 #ifdef MOTION
     clip = gl_Position;
-    lastClip = lastClipFromWorld * (draws[drawIndex].lastWorldFromModel * vec4(positionModel, 1.0));
+    lastClip = lastClipFromWorld * vec4(transformed(lastWorldFromModel, positionModel), 1.0);
 #endif
 }
 #endif

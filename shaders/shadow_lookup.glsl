@@ -37,7 +37,7 @@ Lookup makeLookup(Receiver r, float constantBias, float slopeTexels, bool withPl
         g *= perMetre;
         l.compared = (r.d - lightView.range.x) * perMetre;
         l.offset = constantBias + slopeTexels * slope * perMetre;
-        l.farthest = onlyNearer ? 0.0 : 1.0;
+        l.farthest = onlyNearer ? 0.0 : 1.0 - l.compared;
     } else {
         l.compared = r.d * perMetre;
         l.offset = lightView.range.x * perMetre + constantBias + slopeTexels * slope * r.d * perMetre;
@@ -47,13 +47,14 @@ Lookup makeLookup(Receiver r, float constantBias, float slopeTexels, bool withPl
     return l;
 }
 
-// 1 if the caster stored as z at an offset of δ texels lies in front of the receiver's plane.
+// 1 if the caster stored as z at an offset of δ texels lies in front of the receiver's plane. An empty texel, z = 1, never
+// does: the plane is cut off at the far end.
 float blocks(Lookup l, float z, vec2 delta)
 {
     float change = dot(l.gradient, delta);
     float stored = z + l.offset;
-    if (directional) return z < 1.0 && stored < l.compared + min(change, l.farthest) ? 1.0 : 0.0;
-    return z < 1.0 && stored * (1.0 + max(change, l.farthest)) < l.compared ? 1.0 : 0.0;
+    if (directional) return stored < l.compared + min(change, l.farthest) ? 1.0 : 0.0;
+    return stored * (1.0 + max(change, l.farthest)) < l.compared ? 1.0 : 0.0;
 }
 
 // The stored depth of the texel whose lower left corner is `corner` [texels]. The sampler clamps to the edge: outside the

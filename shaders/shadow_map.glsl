@@ -17,7 +17,7 @@ flat out vec2 alpha_cutoff;
 #endif
 void main()
 {
-    vec4 positionWorld = draws[drawIndex].worldFromModel * vec4(positionModel, 1.0);
+    vec4 positionWorld = vec4(transformed(worldFromModel, positionModel), 1.0);
 #if defined(RADIAL)
     fromLight = (lightView.lightFromWorld * positionWorld).xyz - vec3(lightView.sample_reference.xy, 0.0);
 #elif defined(LINEAR_DEPTH)
@@ -27,7 +27,7 @@ void main()
     gl_Position = lightView.clipFromWorld * positionWorld;
 #ifdef MASKED
     uv = uvModel;
-    alpha_cutoff = vec2(draws[drawIndex].baseColour.a, draws[drawIndex].emissive_cutoff.w);
+    alpha_cutoff = vec2(drawBaseColour.a, drawEmissiveCutoff.w);
 #endif
 }
 #endif

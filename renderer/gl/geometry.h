@@ -6,9 +6,7 @@
 
 namespace penumbra {
 
-// Something with triangles that a Draw pass sends through the rasteriser. The vertex shader gets
-//     layout(location = 0) in vec3 positionModel;  1: vec3 normalModel;  2: vec2 uv;  3: uint drawIndex;
-// and finds the draw's matrices and material in the storage block `Draws` of shaders/draws.glsl.
+// Something with triangles that a Draw pass sends through the rasteriser, with the attributes of shaders/draws.glsl.
 class Geometry {
 public:
     // The variants of a pass's program: as it is; with TEXTURED defined, for base colours that have a texture (the same

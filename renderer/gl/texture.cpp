@@ -60,9 +60,7 @@ Samplers::Samplers() {
         const GLint filter = sampling == Sampling::Nearest ? GL_NEAREST : GL_LINEAR;
         glSamplerParameteri(name, GL_TEXTURE_MAG_FILTER, filter);
         glSamplerParameteri(name, GL_TEXTURE_MIN_FILTER,
-                            sampling == Sampling::LinearMipmap ? GL_LINEAR_MIPMAP_LINEAR
-                            : sampling == Sampling::Nearest    ? GL_NEAREST_MIPMAP_NEAREST
-                                                               : filter);
+                            sampling == Sampling::LinearMipmap ? GL_LINEAR_MIPMAP_LINEAR : filter);
         glSamplerParameteri(name, GL_TEXTURE_WRAP_S, GL_CLAMP_TO_EDGE);
         glSamplerParameteri(name, GL_TEXTURE_WRAP_T, GL_CLAMP_TO_EDGE);
         if (sampling == Sampling::Compare) {

@@ -32,6 +32,9 @@ glm::mat4 worldFromSquare(const Ground& ground) {
     return glm::scale(moved, glm::vec3(ground.halfSize, 1, ground.halfSize));
 }
 
+// The upper three rows of a matrix whose last row is 0 0 0 1.
+glm::mat3x4 affineRows(const glm::mat4& matrix) { return glm::mat3x4(glm::transpose(matrix)); }
+
 } // namespace
 
 GpuScene::TextureHandle GpuScene::upload(const TextureImage& image) {
@@ -91,10 +94,9 @@ GpuScene::GpuScene(const SceneState& state) {
                      [&](const Keyed& a, const Keyed& b) { return key(a.batch) < key(b.batch); });
 
     std::vector<Command> commands;
-    std::vector<uint32_t> drawIndices;
     for (const Keyed& keyed : order) {
         const uint32_t index = static_cast<uint32_t>(commands.size());
-        DrawData data{glm::mat4(1), glm::mat4(1), groundColour, glm::vec4(0)};
+        DrawData data{affineRows(glm::mat4(1)), groundColour, glm::vec4(0), affineRows(glm::mat4(1))};
         if (keyed.drawable < state.drawables().size()) {
             const Drawable& d = state.drawables()[keyed.drawable];
             const Primitive& p = scene.meshes[d.mesh].primitives[d.primitive];
@@ -107,7 +109,6 @@ GpuScene::GpuScene(const SceneState& state) {
                                 static_cast<int32_t>(groundVertices_), index});
         }
         draws_.push_back(data);
-        drawIndices.push_back(index);
         drawableOfCommand_.push_back(keyed.drawable);
         if (batches_.empty() || key(batches_.back()) != key(keyed.batch)) {
             batches_.push_back(keyed.batch);
@@ -117,7 +118,6 @@ GpuScene::GpuScene(const SceneState& state) {
         }
     }
     commands_ = Buffer("draw commands", commands.size() * sizeof(Command), commands.data(), GL_DYNAMIC_STORAGE_BIT);
-    drawIndices_ = Buffer("draw indices", drawIndices.size() * sizeof(uint32_t), drawIndices.data());
     drawBuffer_ = Buffer("draws", draws_.size() * sizeof(DrawData), draws_.data(), GL_DYNAMIC_STORAGE_BIT);
 
     GLuint vao = 0;
@@ -132,11 +132,14 @@ GpuScene::GpuScene(const SceneState& state) {
     attribute(0, positions_, 3, sizeof(glm::vec3));
     attribute(1, normals_, 3, sizeof(glm::vec3));
     attribute(2, uvs_, 2, sizeof(glm::vec2));
-    glVertexArrayVertexBuffer(vao, 3, drawIndices_.name(), 0, sizeof(uint32_t));
-    glVertexArrayAttribIFormat(vao, 3, 1, GL_UNSIGNED_INT, 0);
-    glVertexArrayAttribBinding(vao, 3, 3);
-    glVertexArrayBindingDivisor(vao, 3, 1);
-    glEnableVertexArrayAttrib(vao, 3);
+    constexpr GLuint firstInstanced = 3, instanced = sizeof(DrawData) / sizeof(glm::vec4);
+    glVertexArrayVertexBuffer(vao, firstInstanced, drawBuffer_.name(), 0, sizeof(DrawData));
+    glVertexArrayBindingDivisor(vao, firstInstanced, 1);
+    for (GLuint i = 0; i < instanced; ++i) {
+        glVertexArrayAttribFormat(vao, firstInstanced + i, 4, GL_FLOAT, GL_FALSE, i * sizeof(glm::vec4));
+        glVertexArrayAttribBinding(vao, firstInstanced + i, firstInstanced);
+        glEnableVertexArrayAttrib(vao, firstInstanced + i);
+    }
     glVertexArrayElementBuffer(vao, indices_.name());
 
     for (const TextureImage& image : scene.textures) textures_.push_back(upload(image));
@@ -153,11 +156,11 @@ void GpuScene::update(const SceneState& state) {
         const uint32_t drawable = drawableOfCommand_[i];
         if (drawable < state.drawables().size()) {
             const uint32_t node = state.drawables()[drawable].node;
-            draws_[i].worldFromModel = state.pose().worldFromNode[node];
-            draws_[i].lastWorldFromModel = state.lastPose().worldFromNode[node];
+            draws_[i].worldFromModel = affineRows(state.pose().worldFromNode[node]);
+            draws_[i].lastWorldFromModel = affineRows(state.lastPose().worldFromNode[node]);
         } else {
             const uint32_t instances = state.ground() ? 1 : 0;
-            if (instances) draws_[i].worldFromModel = draws_[i].lastWorldFromModel = worldFromSquare(*state.ground());
+            if (instances) draws_[i].worldFromModel = draws_[i].lastWorldFromModel = affineRows(worldFromSquare(*state.ground()));
             commands_.update(i * sizeof(Command) + offsetof(Command, instances), sizeof(uint32_t), &instances);
         }
     }
@@ -166,7 +169,6 @@ void GpuScene::update(const SceneState& state) {
 
 void GpuScene::draw(const Draw& draw, const Programs& programs) const {
     glBindVertexArray(vertexArray_.get());
-    glBindBufferBase(GL_SHADER_STORAGE_BUFFER, 0, drawBuffer_.name());
     glBindBuffer(GL_DRAW_INDIRECT_BUFFER, commands_.name());
 
     const auto textureUnit = [](const Program& program) {

@@ -24,7 +24,7 @@ private:
     struct Command {
         uint32_t count, instances, firstIndex;
         int32_t baseVertex;
-        uint32_t baseInstance; // = index into Draws
+        uint32_t baseInstance; // of the instanced attributes: the command's own index
     };
     // Neighbouring commands that may be drawn in one call for every purpose.
     struct Batch {
@@ -32,9 +32,10 @@ private:
         int texture; // of Scene::textures, -1: none
         bool masked, doubleSided, mirrored, casts, closed;
     };
-    struct DrawData { // shaders/draws.glsl
-        glm::mat4 worldFromModel, lastWorldFromModel;
+    struct DrawData { // the instanced attributes of shaders/draws.glsl; matrices by rows
+        glm::mat3x4 worldFromModel;
         glm::vec4 baseColour, emissive_cutoff;
+        glm::mat3x4 lastWorldFromModel;
     };
     static void destroyVertexArray(GLuint name) { glDeleteVertexArrays(1, &name); }
     static void destroyTexture(GLuint name) { glDeleteTextures(1, &name); }
@@ -44,7 +45,7 @@ private:
     std::vector<uint32_t> drawableOfCommand_; // index into SceneState::drawables(); drawables().size(): the ground
     std::vector<Batch> batches_;
     std::vector<DrawData> draws_; // one per command
-    Buffer positions_, normals_, uvs_, indices_, drawIndices_, commands_, drawBuffer_;
+    Buffer positions_, normals_, uvs_, indices_, commands_, drawBuffer_;
     Handle<destroyVertexArray> vertexArray_;
     std::vector<TextureHandle> textures_; // as Scene::textures, then a white one
     uint64_t sentVersion_ = 0;

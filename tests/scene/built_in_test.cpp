@@ -83,7 +83,7 @@ TEST_CASE("the courtyard is rich but not heavy") {
     CHECK(scene.triangleCount() <= 75'000);
     CHECK(fs::file_size(builtInFolder / "courtyard.glb") < 2u << 20);
     CHECK(scene.animations.size() == 1);
-    CHECK(scene.textures.size() == 2);
+    CHECK(scene.textures.size() == 1);
     Pose still, later;
     evaluatePose(scene, 0, still);
     evaluatePose(scene, 3, later);
