@@ -13,11 +13,10 @@ constexpr Scope sceneScope{.instance = {}, .owner = "scene"};
 constexpr Scope frameScope{};
 
 constexpr Channel depthChannels[] = {{"depth", "d", "distance along the view axis; 0: no surface", Unit::Metres}};
-constexpr Channel normalChannels[] = {
-    {"geometric-x", "n", "geometric normal, world, octahedral", Unit::None, -1, 1},
-    {"geometric-y", "n", "geometric normal, world, octahedral", Unit::None, -1, 1},
-    {"shading-x", "n", "interpolated normal, world, octahedral", Unit::None, -1, 1},
-    {"shading-y", "n", "interpolated normal, world, octahedral", Unit::None, -1, 1}};
+constexpr Channel normalChannels[] = {{"geometric-x", "n", "geometric normal, world, octahedral", Unit::None, -1, 1},
+                                      {"geometric-y", "n", "geometric normal, world, octahedral", Unit::None, -1, 1},
+                                      {"shading-x", "n", "interpolated normal, world, octahedral", Unit::None, -1, 1},
+                                      {"shading-y", "n", "interpolated normal, world, octahedral", Unit::None, -1, 1}};
 constexpr Channel colourChannels[] = {{"red", "", "base colour, linear", Unit::None, 0, 1},
                                       {"green", "", "base colour, linear", Unit::None, 0, 1},
                                       {"blue", "", "base colour, linear", Unit::None, 0, 1}};
@@ -39,8 +38,8 @@ struct GeometryConstants {
 struct LightingConstants {
     ViewBlock view;
     mat4 lightFromWorld;
-    vec4 colour_ambient;      // light's colour · intensity, w = ambient
-    vec4 shape_reach;         // x = LightShape, y = distance at which intensity holds [m], zw = size of the light [m]
+    vec4 colour_ambient; // light's colour · intensity, w = ambient
+    vec4 shape_reach;    // x = LightShape, y = distance at which intensity holds [m], zw = size of the light [m]
 };
 
 struct DisplayConstants {
@@ -109,7 +108,8 @@ Image show(Flow& flow, const Session& session, Image shown) {
 
 View sessionView(const Session& session, const Bounds& bounds) {
     // Between the nearest and the farthest corner of the scene; never nearer than 1/10000 of the farthest.
-    const float reach = bounds.empty() ? 1.0f : glm::distance(session.camera.eye, bounds.centre()) + 0.5f * bounds.diagonal();
+    const float reach =
+        bounds.empty() ? 1.0f : glm::distance(session.camera.eye, bounds.centre()) + 0.5f * bounds.diagonal();
     const float far = std::max(1.01f * reach, 1e-6f);
     return makeView(session.camera, session.size, far * 1e-4f, far);
 }
@@ -118,14 +118,8 @@ Frame buildFrame(Flow& flow, const Session& session, const SceneState& state, co
                  const glm::mat4& lastClipFromWorld) {
     const View view = sessionView(session, state.bounds());
     const Surfaces surfaces = drawSurfaces(flow, view, state, geometry, lastClipFromWorld);
-    const Inputs inputs{view,
-                        session.light,
-                        surfaces.buffer,
-                        geometry,
-                        state.poseVersion(),
-                        state.occluders(),
-                        session.frame,
-                        session.seed};
+    const Inputs inputs{view,          session.light, surfaces.buffer, geometry, state.poseVersion(), state.occluders(),
+                        session.frame, session.seed};
     const Scope instance{.instance = {}, .owner = session.techniques.card().id};
     const Image shadow = session.techniques.technique().build(flow, instance, inputs);
     const bool lit = session.display.show == Show::Lit;

@@ -13,8 +13,8 @@ namespace penumbra {
 
 // The surfaces that receive shadows, seen from the camera (or from elsewhere: a technique must not assume the camera).
 struct GeometryBuffer {
-    Image depth;  // R32F: eye depth [m], 0 where there is no surface
-    Image normal; // RGBA16Snorm: xy geometric, zw shading normal, world space, octahedral
+    Image depth;                 // R32F: eye depth [m], 0 where there is no surface
+    Image normal;                // RGBA16Snorm: xy geometric, zw shading normal, world space, octahedral
     std::optional<Image> motion; // RG16F: last frame's position minus this one's [pixels]; only when something moves
 };
 
@@ -29,10 +29,10 @@ struct Inputs {
     const View& view;
     const AreaLight& light;
     GeometryBuffer geometryBuffer;
-    const Geometry* geometry;      // what casts; null in an empty scene
-    uint64_t poseVersion;          // changes when a vertex moved
+    const Geometry* geometry; // what casts; null in an empty scene
+    uint64_t poseVersion;     // changes when a vertex moved
     std::span<const Occluder> occluders;
-    uint32_t frame;                // index of the frame since the last reset, for sequences
+    uint32_t frame; // index of the frame since the last reset, for sequences
     uint32_t seed;
 };
 

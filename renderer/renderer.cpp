@@ -15,7 +15,8 @@ namespace {
 std::string checkedDriver() {
     const auto text = [](GLenum name) { return reinterpret_cast<const char*>(glGetString(name)); };
     if (!epoxy_is_desktop_gl() || epoxy_gl_version() < 45)
-        throw InputError(fmt::format("OpenGL 4.5 is needed, this driver gives {} ({})", text(GL_VERSION), text(GL_RENDERER)));
+        throw InputError(
+            fmt::format("OpenGL 4.5 is needed, this driver gives {} ({})", text(GL_VERSION), text(GL_RENDERER)));
     return fmt::format("{}, {}", text(GL_RENDERER), text(GL_VERSION));
 }
 
@@ -64,9 +65,10 @@ void Renderer::render(const Session& session, Timing timing) {
 Renderer::Pixels Renderer::read(Image image, int layer, int level) const {
     const Texture& texture = runner_.texture(flow_, image);
     const Extent& extent = texture.extent();
-    ensure(layer >= 0 && layer < extent.layers && level >= 0 && level < extent.levels, "a layer or level that is not there");
-    Pixels pixels{std::max(extent.width >> level, 1), std::max(extent.height >> level, 1), info(texture.format()).channels,
-                  texture.read(layer, level)};
+    ensure(layer >= 0 && layer < extent.layers && level >= 0 && level < extent.levels,
+           "a layer or level that is not there");
+    Pixels pixels{std::max(extent.width >> level, 1), std::max(extent.height >> level, 1),
+                  info(texture.format()).channels, texture.read(layer, level)};
     const auto row = static_cast<std::ptrdiff_t>(pixels.width) * pixels.channels;
     for (std::ptrdiff_t low = 0, high = pixels.height - 1; low < high; ++low, --high)
         std::swap_ranges(pixels.values.begin() + low * row, pixels.values.begin() + (low + 1) * row,

@@ -19,9 +19,9 @@ public:
     Renderer(); // throws InputError if the context is not OpenGL 4.5
     ~Renderer();
 
-    // Draws one frame of the session at session.size. Throws InputError, before anything is drawn, if it would hold more
-    // textures than session.textureLimit or one that the driver cannot have. There is no frame to look at then, and the
-    // next one is a first one.
+    // Draws one frame of the session at session.size. Throws InputError, before anything is drawn, if it would hold
+    // more textures than session.textureLimit or one that the driver cannot have. There is no frame to look at then,
+    // and the next one is a first one.
     void render(const Session& session, Timing timing = Timing::Off);
     // Drops all history: the next frame is the first.
     void reset();

@@ -61,6 +61,9 @@ float blocks(Lookup l, float z, vec2 delta)
 // map its empty border answers.
 float storedDepth(vec2 corner) { return textureLod(shadowMap, (corner + 0.5) * lightView.light.w, 0.0).x; }
 
+// The stored depths of the four texels from `corner` on: w, z in its row, x, y in the row above.
+vec4 gatheredDepths(vec2 corner) { return textureGather(shadowMap, (corner + 1.0) * lightView.light.w); }
+
 // Of the texel that contains `place` [texels].
 float blocksAt(Lookup l, vec2 place)
 {
@@ -74,9 +77,10 @@ float blocksBilinear(Lookup l, vec2 place)
     vec2 corner = floor(place - 0.5);
     vec2 f = place - 0.5 - corner;
     vec2 delta = corner + 0.5 - l.texel;
-    float b00 = blocks(l, storedDepth(corner), delta);
-    float b10 = blocks(l, storedDepth(corner + vec2(1, 0)), delta + vec2(1, 0));
-    float b01 = blocks(l, storedDepth(corner + vec2(0, 1)), delta + vec2(0, 1));
-    float b11 = blocks(l, storedDepth(corner + vec2(1, 1)), delta + vec2(1, 1));
+    vec4 z = gatheredDepths(corner);
+    float b00 = blocks(l, z.w, delta);
+    float b10 = blocks(l, z.z, delta + vec2(1, 0));
+    float b01 = blocks(l, z.x, delta + vec2(0, 1));
+    float b11 = blocks(l, z.y, delta + vec2(1, 1));
     return mix(mix(b00, b10, f.x), mix(b01, b11, f.x), f.y);
 }

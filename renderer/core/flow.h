@@ -3,7 +3,8 @@
 // exists only because a pass wrote it, so the order of the list is the order of the data and nothing is read early.
 // Nothing here touches OpenGL; renderer/gl/flow_runner.h carries a flow out.
 //
-//     const Image map = flow.pass(scope, {.stage = Stage::ShadowMap, .name = "shadow-map", .work = ..., .writes = {...}})[0];
+//     const Image map = flow.pass(scope, {.stage = Stage::ShadowMap, .name = "shadow-map", .work = ..., .writes =
+//     {...}})[0];
 //
 // The list is written anew every frame from plain values, without allocating once the vectors have grown.
 #pragma once
@@ -44,7 +45,7 @@ private:
 class PastImage {
 public:
     bool operator==(const PastImage&) const = default;
-    int index() const { return index_; } // of the flow's pasts()
+    int index() const { return index_; }  // of the flow's pasts()
     bool valid() const { return valid_; } // false: there was none, it reads as zero
 
 private:
@@ -96,9 +97,9 @@ struct Draw {
     uint64_t poseVersion = 0;           // equal versions: equal vertices
     Faces faces = Faces::Both;
     bool castersOnly = false;
-    bool textured = false;              // the shader looks at base colour textures, not only at the masks of some
-    bool depthClamp = false;            // keep what lies before the near plane
-    int border = 0;                     // texels along the edge that stay cleared
+    bool textured = false;   // the shader looks at base colour textures, not only at the masks of some
+    bool depthClamp = false; // keep what lies before the near plane
+    int border = 0;          // texels along the edge that stay cleared
     float clear[4] = {0, 0, 0, 0};
     bool operator==(const Draw&) const = default;
 };
@@ -146,9 +147,9 @@ class Flow {
 public:
     struct ImageNode {
         ImageSpec spec;
-        int label = 0; // the label's number; text by label()
-        int pass = 0;  // that wrote it
-        int repeat = 0; // iteration of flow.repeat, 0 outside
+        int label = 0;     // the label's number; text by label()
+        int pass = 0;      // that wrote it
+        int repeat = 0;    // iteration of flow.repeat, 0 outside
         bool kept = false; // somebody reads it as PastImage: two textures take turns
     };
     struct PassNode {
@@ -189,8 +190,8 @@ public:
     // Forgets the past, so that the next frame is a first one.
     void forget();
 
-    // Runs body(i) for i in [0, n). Passes of all rounds carry the same labels, and their timings sum. An image of round
-    // i may be read in rounds i and i + 1 and, if of the last round, after the loop.
+    // Runs body(i) for i in [0, n). Passes of all rounds carry the same labels, and their timings sum. An image of
+    // round i may be read in rounds i and i + 1 and, if of the last round, after the loop.
     template <class Body> void repeat(int n, Body&& body) {
         ensure(repeat_ == 0, "repeats do not nest");
         for (int i = 0; i < n; ++i) {

@@ -38,7 +38,10 @@ std::string upperCase(std::string_view kebab) {
 } // namespace
 
 Parameter::Parameter(ParameterSet& set, Type type, const Spec& spec)
-    : set_(set), type_(type), spec_(spec), group_(set.group_) {
+    : set_(set)
+    , type_(type)
+    , spec_(spec)
+    , group_(set.group_) {
     if (type == Type::Choice) {
         spec_.min = 0;
         spec_.max = static_cast<double>(spec.choices.size()) - 1;
@@ -111,8 +114,10 @@ std::string Parameter::rangeText() const {
     std::string range = fmt::format("{:g}..{:g}", spec_.min, spec_.max);
     const std::string_view unit = unitName(spec_.unit);
     if (!unit.empty()) range += fmt::format("{}{}", spec_.unit == Unit::Degrees ? "" : " ", unit);
-    if (type_ == Type::Integer && spec_.step == 2) range += std::fmod(spec_.min, 2) == 1 ? ", odd" : ", even";
-    else if (spec_.step > 1 || (type_ == Type::Real && spec_.step > 0)) range += fmt::format(" in steps of {:g}", spec_.step);
+    if (type_ == Type::Integer && spec_.step == 2)
+        range += std::fmod(spec_.min, 2) == 1 ? ", odd" : ", even";
+    else if (spec_.step > 1 || (type_ == Type::Real && spec_.step > 0))
+        range += fmt::format(" in steps of {:g}", spec_.step);
     return range;
 }
 
@@ -154,8 +159,9 @@ void ParameterSet::copyValuesFrom(const ParameterSet& other) {
 }
 
 bool ParameterSet::operator==(const ParameterSet& other) const {
-    return owner_ == other.owner_ && std::equal(all_.begin(), all_.end(), other.all_.begin(), other.all_.end(),
-                                                [](const Parameter* a, const Parameter* b) { return a->bits() == b->bits(); });
+    return owner_ == other.owner_ &&
+           std::equal(all_.begin(), all_.end(), other.all_.begin(), other.all_.end(),
+                      [](const Parameter* a, const Parameter* b) { return a->bits() == b->bits(); });
 }
 
 std::string camelCase(std::string_view kebab) {

@@ -42,10 +42,10 @@ struct Spec {
     double step = 0;              // values are min + k·step; 0: continuous (integers: 1)
     Unit unit = Unit::None;
     Scale scale = Scale::Linear;
-    double smallest = 0;          // logarithmic with min = 0: the smallest positive value
-    bool programConstant = false; // compiled into the shader as a #define instead of a uniform
-    std::string_view source = {}; // paper and equation that it comes from
-    std::string_view help = {};   // one or two sentences: what it trades for what
+    double smallest = 0;                            // logarithmic with min = 0: the smallest positive value
+    bool programConstant = false;                   // compiled into the shader as a #define instead of a uniform
+    std::string_view source = {};                   // paper and equation that it comes from
+    std::string_view help = {};                     // one or two sentences: what it trades for what
     std::span<const std::string_view> choices = {}; // names of the values 0, 1, 2 ... of a Choice
 
     // A default that depends on other parameters (α by format); null: `value`.
@@ -136,7 +136,7 @@ public:
     // Throws InputError that names the nearest parameter.
     Parameter& at(std::string_view id) const;
     void reset();
-    void copyValuesFrom(const ParameterSet& other); // same declaration
+    void copyValuesFrom(const ParameterSet& other);   // same declaration
     bool operator==(const ParameterSet& other) const; // same owner, same values
 
 private:
@@ -148,7 +148,8 @@ private:
 };
 
 // Base of a struct of parameters that a shared stage declares and techniques include as a member:
-//     struct ShadowMapParameters : ParameterGroup { ShadowMapParameters(ParameterSet& s) : ParameterGroup(s, "Shadow map") {}
+//     struct ShadowMapParameters : ParameterGroup { ShadowMapParameters(ParameterSet& s) : ParameterGroup(s, "Shadow
+//     map") {}
 //                                                   Integer size{set, {...}}; ... End end{set}; };
 class ParameterGroup {
 public:

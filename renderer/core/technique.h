@@ -34,7 +34,7 @@ struct Card {
     std::string_view venue;
     std::string_view idea;
     std::string_view assumes;
-    std::string_view fails;       // known failures
+    std::string_view fails; // known failures
     // What the contract tests allow at defaults: the mean of ψ on an empty lit floor, and 1 − ψ under a closed lid.
     double litTolerance = 0, lidTolerance = 0;
     std::unique_ptr<Technique> (*make)() = nullptr;

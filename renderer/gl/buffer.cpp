@@ -46,7 +46,8 @@ void UniformRing::beginFrame(size_t bytesNeeded) {
     turn_ = (turn_ + 1) % turns;
     if (GLsync& fence = fences_[turn_]) {
         constexpr GLuint64 oneSecond = 1'000'000'000;
-        while (glClientWaitSync(fence, GL_SYNC_FLUSH_COMMANDS_BIT, oneSecond) == GL_TIMEOUT_EXPIRED) {}
+        while (glClientWaitSync(fence, GL_SYNC_FLUSH_COMMANDS_BIT, oneSecond) == GL_TIMEOUT_EXPIRED) {
+        }
         glDeleteSync(fence);
         fence = nullptr;
     }

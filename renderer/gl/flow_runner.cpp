@@ -84,14 +84,15 @@ void FlowRunner::bindReads(const Flow& flow, const Flow::PassNode& pass, const P
     for (const Read& read : pass.reads)
         ensure(program.mentions(read.sampler), "a pass reads an image that its shader never mentions");
     for (const Program::Binding& sampler : program.samplers()) {
-        const auto read =
-            std::find_if(pass.reads.begin(), pass.reads.end(), [&](const Read& r) { return r.sampler == sampler.name; });
+        const auto read = std::find_if(pass.reads.begin(), pass.reads.end(),
+                                       [&](const Read& r) { return r.sampler == sampler.name; });
         if (read == pass.reads.end()) {
             ensure(std::holds_alternative<Draw>(pass.work), "a shader samples an image that its pass does not read");
             continue; // a material's texture, bound by the geometry
         }
         const Image* image = std::get_if<Image>(&read->image);
-        const Texture& texture = image ? this->texture(flow, *image) : this->texture(flow, std::get<PastImage>(read->image));
+        const Texture& texture =
+            image ? this->texture(flow, *image) : this->texture(flow, std::get<PastImage>(read->image));
         glBindTextureUnit(sampler.unit, texture.name());
         glBindSampler(sampler.unit, samplers_.get(read->sampling));
     }
@@ -104,17 +105,18 @@ void FlowRunner::runCompute(const Flow& flow, const Flow::PassNode& pass) {
     const Program& program = this->program(pass);
     bindReads(flow, pass, program);
     for (const Program::Binding& image : program.images()) {
-        const auto written = std::find_if(pass.writes.begin(), pass.writes.end(), [&](Image w) {
-            return camelCase(flow.spec(w).name) == image.name;
-        });
+        const auto written = std::find_if(pass.writes.begin(), pass.writes.end(),
+                                          [&](Image w) { return camelCase(flow.spec(w).name) == image.name; });
         ensure(written != pass.writes.end(), "a shader stores to an image that its pass does not write");
         const Texture& texture = this->texture(flow, *written);
-        glBindImageTexture(image.unit, texture.name(), 0, GL_TRUE, 0, GL_READ_WRITE, glFormat(texture.format()).internal);
+        glBindImageTexture(image.unit, texture.name(), 0, GL_TRUE, 0, GL_READ_WRITE,
+                           glFormat(texture.format()).internal);
     }
     const Extent& extent = flow.spec(pass.writes[0]).extent;
     glUseProgram(program.name());
     glDispatchCompute(static_cast<GLuint>((extent.width + groupSize - 1) / groupSize),
-                      static_cast<GLuint>((extent.height + groupSize - 1) / groupSize), static_cast<GLuint>(extent.layers));
+                      static_cast<GLuint>((extent.height + groupSize - 1) / groupSize),
+                      static_cast<GLuint>(extent.layers));
     glMemoryBarrier(GL_TEXTURE_FETCH_BARRIER_BIT | GL_SHADER_IMAGE_ACCESS_BARRIER_BIT | GL_TEXTURE_UPDATE_BARRIER_BIT |
                     GL_FRAMEBUFFER_BARRIER_BIT);
 }
@@ -134,7 +136,8 @@ void FlowRunner::runDraw(const Flow& flow, const Flow::PassNode& pass, const Dra
             glNamedFramebufferTexture(target, buffers[colours++], texture.name(), 0);
         }
     }
-    for (int i = colours; i < 4; ++i) glNamedFramebufferTexture(target, GL_COLOR_ATTACHMENT0 + static_cast<GLenum>(i), 0, 0);
+    for (int i = colours; i < 4; ++i)
+        glNamedFramebufferTexture(target, GL_COLOR_ATTACHMENT0 + static_cast<GLenum>(i), 0, 0);
     if (!hasDepth) glNamedFramebufferTexture(target, GL_DEPTH_ATTACHMENT, 0, 0);
     glNamedFramebufferDrawBuffers(target, std::max(colours, 1), buffers);
     ensure(glCheckNamedFramebufferStatus(target, GL_DRAW_FRAMEBUFFER) == GL_FRAMEBUFFER_COMPLETE,
@@ -160,7 +163,8 @@ void FlowRunner::runDraw(const Flow& flow, const Flow::PassNode& pass, const Dra
         glScissor(draw.border, draw.border, std::max(extent.width - 2 * draw.border, 0),
                   std::max(extent.height - 2 * draw.border, 0));
         bindReads(flow, pass, program(pass));
-        draw.geometry->draw(draw, {program(pass), program(pass, draw.textured ? "TEXTURED" : nullptr), program(pass, "MASKED")});
+        draw.geometry->draw(
+            draw, {program(pass), program(pass, draw.textured ? "TEXTURED" : nullptr), program(pass, "MASKED")});
     }
     glBindFramebuffer(GL_DRAW_FRAMEBUFFER, 0);
     set(GL_SCISSOR_TEST, false);

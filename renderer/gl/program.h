@@ -57,7 +57,8 @@ public:
     explicit ProgramLibrary(std::filesystem::path folder) : folder_(std::move(folder)) {}
 
     // Compiled at first use. Throws std::runtime_error with our file and line if it never compiled.
-    const Program& get(ProgramKind kind, std::string_view shader, const Defines& defines, const ParameterSet* parameters);
+    const Program& get(ProgramKind kind, std::string_view shader, const Defines& defines,
+                       const ParameterSet* parameters);
 
     // Recompiles what changed on disk since; looks at most twice a second. Returns the errors of files whose newest
     // text does not compile, one text each.
@@ -74,8 +75,8 @@ private:
         ProgramKind kind;
         std::string shader;
         Defines defines;
-        std::string owner;                // of the parameters
-        std::vector<uint32_t> constants;  // their values that are compiled in
+        std::string owner;               // of the parameters
+        std::vector<uint32_t> constants; // their values that are compiled in
         std::string parameterText;
         Program program;
         std::vector<File> files;

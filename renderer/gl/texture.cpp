@@ -9,9 +9,14 @@ namespace penumbra {
 
 GlFormat glFormat(Format format) {
     static constexpr GlFormat table[] = {
-        {GL_RGBA8, GL_RGBA, GL_FLOAT},   {GL_RGBA16_SNORM, GL_RGBA, GL_FLOAT}, {GL_R16F, GL_RED, GL_FLOAT},
-        {GL_RG16F, GL_RG, GL_FLOAT},     {GL_RGBA16F, GL_RGBA, GL_FLOAT},      {GL_R32F, GL_RED, GL_FLOAT},
-        {GL_RG32F, GL_RG, GL_FLOAT},     {GL_RGBA32F, GL_RGBA, GL_FLOAT},
+        {GL_RGBA8, GL_RGBA, GL_FLOAT},
+        {GL_RGBA16_SNORM, GL_RGBA, GL_FLOAT},
+        {GL_R16F, GL_RED, GL_FLOAT},
+        {GL_RG16F, GL_RG, GL_FLOAT},
+        {GL_RGBA16F, GL_RGBA, GL_FLOAT},
+        {GL_R32F, GL_RED, GL_FLOAT},
+        {GL_RG32F, GL_RG, GL_FLOAT},
+        {GL_RGBA32F, GL_RGBA, GL_FLOAT},
         {GL_DEPTH_COMPONENT32F, GL_DEPTH_COMPONENT, GL_FLOAT},
     };
     return table[static_cast<size_t>(format)];
@@ -21,8 +26,8 @@ Texture::Texture(std::string_view label, Format format, Extent extent) : format_
     GLint limit = 0;
     glGetIntegerv(GL_MAX_TEXTURE_SIZE, &limit);
     if (extent.width > limit || extent.height > limit)
-        throw InputError(fmt::format("{}: {}x{} texels are more than this driver's limit of {}x{}", label,
-                                     extent.width, extent.height, limit, limit));
+        throw InputError(fmt::format("{}: {}x{} texels are more than this driver's limit of {}x{}", label, extent.width,
+                                     extent.height, limit, limit));
     GLuint name = 0;
     glCreateTextures(target(), 1, &name);
     handle_ = Handle<destroy>(name);

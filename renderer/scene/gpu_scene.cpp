@@ -160,7 +160,8 @@ void GpuScene::update(const SceneState& state) {
             draws_[i].lastWorldFromModel = affineRows(state.lastPose().worldFromNode[node]);
         } else {
             const uint32_t instances = state.ground() ? 1 : 0;
-            if (instances) draws_[i].worldFromModel = draws_[i].lastWorldFromModel = affineRows(worldFromSquare(*state.ground()));
+            if (instances)
+                draws_[i].worldFromModel = draws_[i].lastWorldFromModel = affineRows(worldFromSquare(*state.ground()));
             commands_.update(i * sizeof(Command) + offsetof(Command, instances), sizeof(uint32_t), &instances);
         }
     }
@@ -196,8 +197,8 @@ void GpuScene::draw(const Draw& draw, const Programs& programs) const {
         uint32_t commands = 0;
         const auto alike = [&](const Batch& other) {
             return other.casts == batch.casts && &programOf(other) == &program &&
-                   (unit < 0 || other.texture == batch.texture) &&
-                   culls(other) == culls(batch) && (!culls(batch) || other.mirrored == batch.mirrored);
+                   (unit < 0 || other.texture == batch.texture) && culls(other) == culls(batch) &&
+                   (!culls(batch) || other.mirrored == batch.mirrored);
         };
         for (; end < batches_.size() && alike(batches_[end]); ++end) commands += batches_[end].commandCount;
         i = end;

@@ -20,8 +20,9 @@ void SceneState::setScene(std::shared_ptr<const Scene> scene) {
         if (node.mesh < 0 || !node.visible) continue;
         const Mesh& mesh = scene_->meshes[static_cast<size_t>(node.mesh)];
         for (uint32_t p = 0; p < mesh.primitives.size(); ++p)
-            if (mesh.primitives[p].indexCount > 0) drawables_.push_back({n, static_cast<uint32_t>(node.mesh), p,
-                                                                         closed[static_cast<size_t>(node.mesh)][p]});
+            if (mesh.primitives[p].indexCount > 0)
+                drawables_.push_back(
+                    {n, static_cast<uint32_t>(node.mesh), p, closed[static_cast<size_t>(node.mesh)][p]});
     }
     pose_ = lastPose_ = Pose();
     ground_.reset();

@@ -18,8 +18,8 @@ struct Drawable {
 class SceneState {
 public:
     void setScene(std::shared_ptr<const Scene> scene);
-    // Poses the scene for a frame. `ground` adds the plane below it. "Moves" means that a node's matrix differs from the
-    // one of the update before; the first update after setScene moves nothing.
+    // Poses the scene for a frame. `ground` adds the plane below it. "Moves" means that a node's matrix differs from
+    // the one of the update before; the first update after setScene moves nothing.
     void update(double seconds, bool ground);
 
     const Scene* scene() const { return scene_.get(); }
@@ -28,7 +28,9 @@ public:
     bool moving() const { return moving_; }
     uint64_t poseVersion() const { return poseVersion_; } // another number whenever a vertex has moved or appeared
     const std::vector<Drawable>& drawables() const { return drawables_; }
-    const std::vector<Occluder>& occluders() const { return occluders_; } // one per drawable, then the ground if there is
+    const std::vector<Occluder>& occluders() const {
+        return occluders_;
+    } // one per drawable, then the ground if there is
     const std::optional<Ground>& ground() const { return ground_; }
     const Bounds& bounds() const { return bounds_; } // world, with the ground
 

@@ -12,9 +12,9 @@ namespace {
 
 using glm::vec3;
 
-constexpr float nearestShare = 1e-4f; // the near plane is never nearer than this share of the far one
+constexpr float nearestShare = 1e-4f;  // the near plane is never nearer than this share of the far one
 constexpr float widestTangent = 5.67f; // a perspective map opens to 80° on either side of the axis
-constexpr int borderTexels = 1; // stays empty: a lookup outside is clamped to it and finds no caster
+constexpr int borderTexels = 1;        // stays empty: a lookup outside is clamped to it and finds no caster
 
 // An axis-aligned rectangle on the reference plane [m].
 struct Window {
@@ -81,7 +81,8 @@ Fit fitMap(const AreaLight& light, std::span<const Occluder> occluders, const ma
     Window casters, receivers;
     for (const Occluder& occluder : occluders) {
         const auto corners = cornersInLight(occluder.boundsWorld, fromWorld);
-        if (!directional && std::all_of(corners.begin(), corners.end(), [&](vec3 c) { return c.z < fit.near; })) continue;
+        if (!directional && std::all_of(corners.begin(), corners.end(), [&](vec3 c) { return c.z < fit.near; }))
+            continue;
         const Window window = project(corners, fit, half, directional);
         // A receiver looks at the whole light, past blockers that fall beside it on the reference plane.
         float d = -1e30f;
@@ -143,10 +144,12 @@ LightViewBlock lightView(const Inputs& inputs, LightSample s, int size) {
 
 namespace {
 
-// Whether the point of the light lies outside the bounds of every closed surface, so that their backs are never nearest.
+// Whether the point of the light lies outside the bounds of every closed surface, so that their backs are never
+// nearest.
 bool seesFromOutside(const Inputs& inputs, const LightViewBlock& view) {
     if (view.sample_reference.w != 0) return true;
-    const vec3 point = vec3(glm::inverse(view.lightFromWorld) * vec4(view.sample_reference.x, view.sample_reference.y, 0, 1));
+    const vec3 point =
+        vec3(glm::inverse(view.lightFromWorld) * vec4(view.sample_reference.x, view.sample_reference.y, 0, 1));
     return std::none_of(inputs.occluders.begin(), inputs.occluders.end(), [&](const Occluder& o) {
         const float slack = 1e-4f * o.boundsWorld.diagonal();
         return o.closed && glm::all(glm::greaterThanEqual(point, o.boundsWorld.min - slack)) &&
@@ -157,8 +160,9 @@ bool seesFromOutside(const Inputs& inputs, const LightViewBlock& view) {
 } // namespace
 
 Image drawShadowMap(Flow& flow, Scope scope, const Inputs& inputs, const LightViewBlock& view, Faces faces) {
-    static constexpr Channel channels[] = {
-        {"depth", "z", "linear depth from the light, (d − near) / (far − near); 1: nothing casts", Unit::DepthRange, 0, 1}};
+    static constexpr Channel channels[] = {{"depth", "z",
+                                            "linear depth from the light, (d − near) / (far − near); 1: nothing casts",
+                                            Unit::DepthRange, 0, 1}};
     const int size = static_cast<int>(view.light.z);
     Draw draw{.shader = "shadow_map.glsl",
               .geometry = inputs.geometry,
@@ -177,20 +181,16 @@ Image drawShadowMap(Flow& flow, Scope scope, const Inputs& inputs, const LightVi
 }
 
 ViewBlock viewBlock(const View& view) {
-    return {view.clipFromWorld,
-            vec4(view.eyeWorld, 0),
-            vec4(view.rayCorner, 0),
-            vec4(view.rayDx, 0),
-            vec4(view.rayDy, 0),
-            vec4(view.size, view.near, view.far)};
+    return {view.clipFromWorld,  vec4(view.eyeWorld, 0), vec4(view.rayCorner, 0),
+            vec4(view.rayDx, 0), vec4(view.rayDy, 0),    vec4(view.size, view.near, view.far)};
 }
 
 ResolveConstants resolveConstants(const Inputs& inputs, const LightViewBlock& light) {
     return {viewBlock(inputs.view), light};
 }
 
-Image resolve(Flow& flow, Scope scope, const Inputs& inputs, const Resolver& resolver, std::initializer_list<Read> reads,
-              const ParameterSet& parameters) {
+Image resolve(Flow& flow, Scope scope, const Inputs& inputs, const Resolver& resolver,
+              std::initializer_list<Read> reads, const ParameterSet& parameters) {
     Compute work{resolver.shader,
                  {{"DIRECTIONAL", inputs.light.shape == LightShape::Directional ? 1 : 0},
                   {"ROUND", inputs.light.shape == LightShape::Rectangle ? 0 : 1}}};

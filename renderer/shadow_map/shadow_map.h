@@ -10,16 +10,17 @@ namespace penumbra {
 // What every technique that reads a shadow map lets its user turn.
 struct ShadowMapParameters : ParameterGroup {
     explicit ShadowMapParameters(ParameterSet& s) : ParameterGroup(s, "Shadow map") {}
-    Integer size{set,
-                 {.id = "map-size",
-                  .label = "Map size",
-                  .value = 1024,
-                  .min = 16,
-                  .max = 16384,
-                  .unit = Unit::Texels,
-                  .scale = Scale::Logarithmic,
-                  .source = "Williams 1978",
-                  .help = "Texels along a side of the shadow map. Finer edges and less bias for more memory and time."}};
+    Integer size{
+        set,
+        {.id = "map-size",
+         .label = "Map size",
+         .value = 1024,
+         .min = 16,
+         .max = 16384,
+         .unit = Unit::Texels,
+         .scale = Scale::Logarithmic,
+         .source = "Williams 1978",
+         .help = "Texels along a side of the shadow map. Finer edges and less bias for more memory and time."}};
     Choice<Faces> faces{set,
                         {.id = "faces",
                          .source = "Reeves 1987; Wang and Molnar 1994 (back faces)",
@@ -37,8 +38,8 @@ struct BiasParameters : ParameterGroup {
         double slope, normalOffset;
     };
     BiasParameters(ParameterSet& s, Defaults defaults)
-        : ParameterGroup(s, "Bias"),
-          constant{set,
+        : ParameterGroup(s, "Bias")
+        , constant{set,
                    {.id = "depth-bias",
                     .label = "Depth bias",
                     .value = 2e-5,
@@ -49,8 +50,8 @@ struct BiasParameters : ParameterGroup {
                     .smallest = 1e-7,
                     .source = "Williams 1978",
                     .help = "Added to every stored depth, as a share of the map's depth range. Hides rounding; more of "
-                            "it detaches shadows from what casts them."}},
-          slope{set,
+                            "it detaches shadows from what casts them."}}
+        , slope{set,
                 {.id = "slope-bias",
                  .label = "Slope bias",
                  .value = defaults.slope,
@@ -59,8 +60,8 @@ struct BiasParameters : ParameterGroup {
                  .unit = Unit::Texels,
                  .source = "King 2004; OpenGL polygon offset",
                  .help = "Depth by which the receiver's plane rises over this many texels. Half a texel removes acne "
-                         "from planes that are compared at their own depth; surfaces that graze the light then leak."}},
-          normalOffset{set,
+                         "from planes that are compared at their own depth; surfaces that graze the light then leak."}}
+        , normalOffset{set,
                        {.id = "normal-offset",
                         .label = "Normal offset",
                         .value = defaults.normalOffset,
@@ -100,7 +101,7 @@ struct Resolver {
     int table = 0;
 };
 // Appends its pass: reads depth, normal and `reads`, writes ψ as "shadow".
-Image resolve(Flow& flow, Scope scope, const Inputs& inputs, const Resolver& resolver, std::initializer_list<Read> reads,
-              const ParameterSet& parameters);
+Image resolve(Flow& flow, Scope scope, const Inputs& inputs, const Resolver& resolver,
+              std::initializer_list<Read> reads, const ParameterSet& parameters);
 
 } // namespace penumbra

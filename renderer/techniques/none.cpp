@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // No shadow map at all: what the scene costs and looks like before any shadows.
-#include "renderer/shadow_map/shadow_map.h"
 #include "renderer/core/technique.h"
+#include "renderer/shadow_map/shadow_map.h"
 
 namespace penumbra {
 namespace {
@@ -12,7 +12,8 @@ public:
     Image build(Flow& flow, Scope scope, const Inputs& inputs) const override {
         const LightViewBlock light = lightView(inputs, lightCentre, 1);
         return resolve(flow, scope, inputs,
-                       {.shader = "techniques/none.glsl", .constants = resolveConstants(inputs, light)}, {}, parameters_);
+                       {.shader = "techniques/none.glsl", .constants = resolveConstants(inputs, light)}, {},
+                       parameters_);
     }
 
 private:
@@ -26,7 +27,8 @@ const Card noneCard{
     .id = "none",
     .title = "No shadows",
     .authors = "-",
-    .idea = "Only surfaces that face away from the light are dark. The base line for the cost of every other technique.",
+    .idea =
+        "Only surfaces that face away from the light are dark. The base line for the cost of every other technique.",
     .assumes = "Nothing.",
     .fails = "Nothing casts a shadow.",
     .lidTolerance = 1,

@@ -4,9 +4,9 @@
 //     ψ = Σ_k w_k [z_k < z_r(k)] / Σ_k w_k
 //
 // over the texels k of a kernel around the receiver, z_r(k) the depth of the receiver's own plane at texel k.
-// Box and Gaussian of n x n texels: with bilinear comparison (n + 1)² texture reads a pixel, else n²; the bilinear weights
-// are folded into the kernel's, which is the same sum as n² hardware 2x2 comparisons. Poisson: as many as there are taps,
-// four times that with bilinear comparison.
+// Box and Gaussian of n x n texels: with bilinear comparison (n + 1)² texture reads a pixel, else n²; the bilinear
+// weights are folded into the kernel's, which is the same sum as n² hardware 2x2 comparisons. Poisson: as many as there
+// are taps, four times that with bilinear comparison.
 #include "renderer/core/technique.h"
 #include "renderer/shadow_map/shadow_map.h"
 
@@ -29,8 +29,9 @@ struct Parameters : ParameterSet {
                          .value = 0,
                          .programConstant = true,
                          .source = "Reeves, Salesin, Cook 1987; Poisson: Mitchell 1991",
-                         .help = "Box: every texel counts alike. Gaussian: smoother edges for the same cost. Poisson: a "
-                                 "few scattered taps, turned from pixel to pixel, trade banding for noise.",
+                         .help =
+                             "Box: every texel counts alike. Gaussian: smoother edges for the same cost. Poisson: a "
+                             "few scattered taps, turned from pixel to pixel, trade banding for noise.",
                          .choices = shapeNames}};
     Integer kernel{*this,
                    {.id = "kernel",
@@ -53,8 +54,9 @@ struct Parameters : ParameterSet {
                 .unit = Unit::Texels,
                 .scale = Scale::Logarithmic,
                 .source = "Peters and Klein 2015, section 5 (9x9, σ 2.4)",
-                .help = "Of the Gaussian. Much below a quarter of the kernel the outer texels are read for nothing; much "
-                        "above it the kernel becomes a box.",
+                .help =
+                    "Of the Gaussian. Much below a quarter of the kernel the outer texels are read for nothing; much "
+                    "above it the kernel becomes a box.",
                 .active = [](const ParameterSet& set) { return set.at("shape").value() == double(Shape::Gaussian); },
                 .inactiveReason = "only a Gaussian kernel has it"}};
     Integer taps{*this,
@@ -89,13 +91,14 @@ struct Parameters : ParameterSet {
                         .label = "Receiver plane",
                         .value = 1,
                         .source = "Isidoro 2006; here the plane itself instead of its slope",
-                        .help = "Compares each texel with the depth of the receiver's plane there instead of one depth. "
-                                "Wide kernels then need no more bias than narrow ones."}};
+                        .help =
+                            "Compares each texel with the depth of the receiver's plane there instead of one depth. "
+                            "Wide kernels then need no more bias than narrow ones."}};
     BiasParameters bias{*this, {.slope = 0.05, .normalOffset = 0.5}};
 };
 
-// Box and Gaussian: 1D weights w_0 .. w_n of the texels from the lower left, four to a vector, for the shader to combine
-// with the bilinear fractions. Poisson: taps in the unit disk, two to a vector.
+// Box and Gaussian: 1D weights w_0 .. w_n of the texels from the lower left, four to a vector, for the shader to
+// combine with the bilinear fractions. Poisson: taps in the unit disk, two to a vector.
 constexpr int tableSize = 32;
 struct PcfConstants {
     ResolveConstants resolve;
@@ -154,7 +157,8 @@ public:
         } else {
             tabulateWeights(parameters_, constants);
         }
-        return resolve(flow, scope, inputs, {.shader = "techniques/pcf.glsl", .constants = constants, .table = tableSize},
+        return resolve(flow, scope, inputs,
+                       {.shader = "techniques/pcf.glsl", .constants = constants, .table = tableSize},
                        {{"shadowMap", map}}, parameters_);
     }
 
@@ -171,7 +175,8 @@ const Card pcfCard{
     .authors = "Reeves, Salesin, Cook",
     .year = 1987,
     .venue = "SIGGRAPH",
-    .idea = "Compare the receiver with many texels around its place on the shadow map and take the mean of the answers.",
+    .idea =
+        "Compare the receiver with many texels around its place on the shadow map and take the mean of the answers.",
     .assumes = "A penumbra of one width everywhere, whatever the light's size and the distance of what casts.",
     .fails = "Contact shadows are as soft as far ones. The cost grows with the square of the kernel.",
     .litTolerance = 1e-4,

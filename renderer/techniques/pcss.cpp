@@ -7,8 +7,9 @@
 //   2. penumbra: half size on the reference plane r f (1/d_b − 1/d_r), directional r (d_r − d_b)
 //   3. percentage-closer filter over that region
 //
-// Region and filter have the shape of the light: a square grid of strata for a rectangle, a spiral for a disk. Exact for
-// a light, one blocker depth and a receiver that are parallel. N_b + N_f texture reads a pixel; N_b where nothing blocks.
+// Region and filter have the shape of the light: a lattice for a rectangle, a spiral for a disk. The search may be
+// denser towards its centre (an offset o becomes o |o|). Exact for a light, one blocker depth and a receiver that are
+// parallel. N_b + N_f texture reads a pixel; N_b where nothing blocks.
 #include "renderer/core/technique.h"
 #include "renderer/shadow_map/shadow_map.h"
 
@@ -16,6 +17,9 @@ namespace penumbra {
 namespace {
 
 constexpr int mostTaps = 64;
+
+enum class Search { Centred, Uniform };
+constexpr std::string_view searchNames[] = {"centred", "uniform"};
 
 struct Parameters : ParameterSet {
     ShadowMapParameters map{*this};
@@ -28,8 +32,19 @@ struct Parameters : ParameterSet {
                         .max = mostTaps,
                         .unit = Unit::Samples,
                         .source = "Fernando 2005; Scherzer 2009 figure 4 (16, 32)",
-                        .help = "Texels looked at for blockers. Too few miss thin casters and make the width noisy; this "
-                                "is the cost of every lit pixel."}};
+                        .help =
+                            "Texels looked at for blockers. Too few miss thin casters and make the width noisy; this "
+                            "is the cost of every lit pixel."}};
+    Choice<Search> search{*this,
+                          {.id = "search",
+                           .label = "Search density",
+                           .value = 0,
+                           .programConstant = true,
+                           .source = "uniform: Fernando 2005; centred: ours",
+                           .help = "Where the search looks. A blocker near the receiver hides the light only within a "
+                                   "small region around it, so taps that are denser at the centre miss few contacts; "
+                                   "uniform ones lose them where the light is large.",
+                           .choices = searchNames}};
     Integer filterTaps{*this,
                        {.id = "filter-taps",
                         .label = "Filter taps",
@@ -47,8 +62,9 @@ struct Parameters : ParameterSet {
                      .value = 1,
                      .min = 0,
                      .max = 4,
-                     .help = "Widens or narrows the penumbrae beyond what the light's size gives. 1 is the light itself; "
-                             "anything else departs from the truth."}};
+                     .help =
+                         "Widens or narrows the penumbrae beyond what the light's size gives. 1 is the light itself; "
+                         "anything else departs from the truth."}};
     Flag rotate{*this,
                 {.id = "rotate",
                  .label = "Shift per pixel",
@@ -60,8 +76,9 @@ struct Parameters : ParameterSet {
                         .label = "Receiver plane",
                         .value = 1,
                         .source = "Isidoro 2006; here the plane itself instead of its slope",
-                        .help = "Compares each texel with the depth of the receiver's plane there instead of one depth, "
-                                "without which wide penumbrae need a bias that detaches them."}};
+                        .help =
+                            "Compares each texel with the depth of the receiver's plane there instead of one depth, "
+                            "without which wide penumbrae need a bias that detaches them."}};
     BiasParameters bias{*this, {.slope = 0.05, .normalOffset = 0.5}};
 };
 
@@ -91,8 +108,9 @@ const Card pcssCard{
     .venue = "SIGGRAPH sketches",
     .idea = "Search for what blocks the light, take the penumbra's width from its mean depth by similar triangles, and "
             "filter the comparisons over that width.",
-    .assumes = "Light, blocker and receiver are parallel, and all blockers of a point lie at one depth. One map, from the "
-               "light's centre.",
+    .assumes =
+        "Light, blocker and receiver are parallel, and all blockers of a point lie at one depth. One map, from the "
+        "light's centre.",
     .fails = "Overlapping blockers at several depths give one wrong width; few taps leave bands or noise in large "
              "penumbrae; what the centre of the light does not see casts nothing.",
     .litTolerance = 1e-4,

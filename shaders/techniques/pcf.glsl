@@ -23,36 +23,32 @@ float filtered(Lookup l, Receiver r)
     return sum / float(taps);
 }
 #else
-// Texel by texel, each compared once. Along one axis the weight of texel k of the bilinear filter is
-// (1 − f) w_k + f w_{k−1}, with f the receiver's fraction between the texel centres.
+// Texel by texel, each compared once, four to a gather. Along one axis the weight of texel k of the bilinear filter is
+// (1 − f) w_k + f w_{k−1}, with f the receiver's fraction between the texel centres; n + 1 texels, an even number.
+float weight(int k) { return k >= 0 && k < kernel ? entry(k) : 0.0; }
+
 float filtered(Lookup l, Receiver r)
 {
     float half_n = 0.5 * float(kernel - 1);
 #if BILINEAR
     vec2 corner = floor(l.texel - half_n - 0.5);
     vec2 f = l.texel - half_n - 0.5 - corner;
-    int n = kernel + 1;
 #else
     vec2 corner = floor(l.texel - half_n);
     vec2 f = vec2(0.0);
-    int n = kernel;
 #endif
-    int rows = r.known < 0.0 ? n : 0;
+    int rows = r.known < 0.0 ? kernel : 0;
     vec2 delta = corner + 0.5 - l.texel;
     float sum = 0.0;
-    float before_y = 0.0;
-    for (int y = 0; y < rows; ++y) {
-        float w_y = y < kernel ? entry(y) : 0.0;
-        float row = 0.0;
-        float before_x = 0.0;
-        for (int x = 0; x < n; ++x) {
-            float w_x = x < kernel ? entry(x) : 0.0;
-            float z = storedDepth(corner + vec2(x, y));
-            row += mix(w_x, before_x, f.x) * blocks(l, z, delta + vec2(x, y));
-            before_x = w_x;
+    for (int y = 0; y < rows; y += 2) {
+        vec2 w_y = mix(vec2(weight(y), weight(y + 1)), vec2(weight(y - 1), weight(y)), f.y);
+        for (int x = 0; x < kernel; x += 2) {
+            vec2 w_x = mix(vec2(weight(x), weight(x + 1)), vec2(weight(x - 1), weight(x)), f.x);
+            vec4 z = gatheredDepths(corner + vec2(x, y));
+            vec2 d = delta + vec2(x, y);
+            sum += w_y.x * (w_x.x * blocks(l, z.w, d) + w_x.y * blocks(l, z.z, d + vec2(1, 0)));
+            sum += w_y.y * (w_x.x * blocks(l, z.x, d + vec2(0, 1)) + w_x.y * blocks(l, z.y, d + vec2(1, 1)));
         }
-        sum += mix(w_y, before_y, f.y) * row;
-        before_y = w_y;
     }
     return sum;
 }

@@ -49,7 +49,11 @@ void main()
     Taps t = firstTap(shift);
     for (int i = 0; i < searched; ++i) {
         t = nextTap(t, i, searchTaps);
+        #if SEARCH == SEARCH_CENTRED
+        vec2 corner = floor(l.texel + search * t.offset * abs(t.offset));
+#else
         vec2 corner = floor(l.texel + search * t.offset);
+#endif
         float z = storedDepth(corner);
         float b = blocks(l, z, corner + 0.5 - l.texel);
         depths += b * z;

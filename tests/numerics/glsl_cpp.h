@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // shaders/lib as C++: the very text that the GPU runs, once in float (does the arithmetic survive?) and once in double
-// (is the formula right?), as namespaces f32 and f64. Literals keep their suffix f in both, so that both copies share the
-// constants that the GPU has and their difference is the rounding of the arithmetic alone.
+// (is the formula right?), as namespaces f32 and f64. Literals keep their suffix f in both, so that both copies share
+// the constants that the GPU has and their difference is the rounding of the arithmetic alone.
 //
 // Redefining a keyword is outside the letter of the standard; every header is included before, and it is undone below.
 #pragma once
@@ -30,11 +30,15 @@ template <int N, class T, Foreign<T> S> auto operator*(glm::vec<N, T> v, S s) { 
 template <int N, class T, Foreign<T> S> auto operator*(S s, glm::vec<N, T> v) { return T(s) * v; }
 template <int N, class T, Foreign<T> S> auto operator+(glm::vec<N, T> v, S s) { return v + T(s); }
 template <int N, class T, Foreign<T> S> auto operator-(glm::vec<N, T> v, S s) { return v - T(s); }
-template <class A, class B> requires Numbers<A, B> auto max(A a, B b) {
+template <class A, class B>
+requires Numbers<A, B>
+auto max(A a, B b) {
     using T = std::common_type_t<A, B>;
     return T(a) < T(b) ? T(b) : T(a);
 }
-template <class A, class B> requires Numbers<A, B> auto min(A a, B b) {
+template <class A, class B>
+requires Numbers<A, B>
+auto min(A a, B b) {
     using T = std::common_type_t<A, B>;
     return T(b) < T(a) ? T(b) : T(a);
 }

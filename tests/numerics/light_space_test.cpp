@@ -30,7 +30,8 @@ TEST_CASE("a point's place on the reference plane is where its ray from the ligh
         CHECK(glm::distance(area, throughPlane(p, s, f)) == Approx(0).margin(1e-9));
         // Directional: along the direction (s, 1) towards the light.
         const dvec3 onPlane = p + dvec3(s, 1.0) * (-f - p.z);
-        CHECK(glm::distance(f64::referenceFromLight(p, s, f, true), dvec2(onPlane.x, onPlane.y)) == Approx(0).margin(1e-9));
+        CHECK(glm::distance(f64::referenceFromLight(p, s, f, true), dvec2(onPlane.x, onPlane.y)) ==
+              Approx(0).margin(1e-9));
         const dvec2 single = dvec2(f32::referenceFromLight(glm::vec3(p), glm::vec2(s), float(f), false));
         CHECK(glm::distance(single, area) <= 1e-5 * (1 + glm::length(area)));
     }
@@ -42,11 +43,13 @@ TEST_CASE("penumbra and search region have the golden sizes") {
     struct Row {
         double r, n, fov, z_r, z_b, searchUv, widthOnReceiver, filterUv;
     };
-    for (const Row& row : {Row{0.5, 1, 60, 10, 4, 0.389711431703, 0.75, 0.0649519052838},
-                           Row{0.5, 1, 60, 10, 9, 0.389711431703, 0.0555555555556, 0.00481125224325},
-                           Row{0.25, 0.1, 90, 5, 2.5, 1.225, 0.25, 0.025}, Row{1, 2, 45, 20, 5, 0.543198051534, 3, 0.181066017178}}) {
+    for (const Row& row :
+         {Row{0.5, 1, 60, 10, 4, 0.389711431703, 0.75, 0.0649519052838},
+          Row{0.5, 1, 60, 10, 9, 0.389711431703, 0.0555555555556, 0.00481125224325},
+          Row{0.25, 0.1, 90, 5, 2.5, 1.225, 0.25, 0.025}, Row{1, 2, 45, 20, 5, 0.543198051534, 3, 0.181066017178}}) {
         const double f = 7, window = 2 * std::tan(glm::radians(row.fov / 2)) * f;
-        CHECK(f64::penumbraHalfSize(dvec2(row.r), row.z_r, row.n, f, false).x / window == Approx(row.searchUv).epsilon(1e-9));
+        CHECK(f64::penumbraHalfSize(dvec2(row.r), row.z_r, row.n, f, false).x / window ==
+              Approx(row.searchUv).epsilon(1e-9));
         const double filter = f64::penumbraHalfSize(dvec2(row.r), row.z_r, row.z_b, f, false).x;
         CHECK(filter / window == Approx(row.filterUv).epsilon(1e-9));
         CHECK(filter * row.z_r / f == Approx(row.widthOnReceiver).epsilon(1e-9));
@@ -64,7 +67,8 @@ TEST_CASE("the box filter of the penumbra's size is the exact share of a half pl
     for (double x = -0.9; x < 0.9; x += 0.05) {
         const double d_r = H, d_b = H - h, f = 3;
         const double half = f64::penumbraHalfSize(dvec2(a), d_r, d_b, f, false).x, place = x * f / d_r;
-        const double filtered = std::clamp((place + half) / (2 * half), 0.0, 1.0); // lit where the filter reaches beyond 0
+        const double filtered =
+            std::clamp((place + half) / (2 * half), 0.0, 1.0); // lit where the filter reaches beyond 0
         CHECK(filtered == Approx(std::clamp((a + x * (H - h) / h) / (2 * a), 0.0, 1.0)).margin(1e-12));
     }
 }
@@ -98,9 +102,9 @@ TEST_CASE("the receiver's plane has the depth that a ray to it measures, at any 
         } else {
             ++met;
             CHECK(depthThere == Approx(std::min(expected, farthest)).epsilon(1e-8));
-            const double single = f32::planeDepth(
-                f32::planeGradient(glm::vec3(n), float(facing), float(d_r), float(f), directional), glm::vec2(delta),
-                float(d_r), float(farthest), directional);
+            const double single =
+                f32::planeDepth(f32::planeGradient(glm::vec3(n), float(facing), float(d_r), float(f), directional),
+                                glm::vec2(delta), float(d_r), float(farthest), directional);
             if (depthThere > 0.5 && depthThere < 50) CHECK(single == Approx(depthThere).epsilon(2e-4));
         }
     }
@@ -131,7 +135,8 @@ TEST_CASE("filter points are even: strata, density and range") {
         for (int i = 0; i < n; ++i) {
             point = f32::latticeNext(point, n);
             REQUIRE((point.x >= 0 && point.x < 1 && point.y >= 0 && point.y < 1));
-            ++x[static_cast<size_t>(std::fmod(point.x + 1.7f + 0.5f / static_cast<float>(n), 1.0f) * static_cast<float>(n))];
+            ++x[static_cast<size_t>(std::fmod(point.x + 1.7f + 0.5f / static_cast<float>(n), 1.0f) *
+                                    static_cast<float>(n))];
             ++y[static_cast<size_t>(point.y * static_cast<float>(n))];
         }
         CHECK(std::all_of(x.begin(), x.end(), [](int c) { return c == 1; })); // one a stratum, wherever the set starts
@@ -145,7 +150,8 @@ TEST_CASE("filter points are even: strata, density and range") {
         double worst = 0;
         for (double u = 0.05; u < 1; u += 0.05)
             for (double v = 0.05; v < 1; v += 0.05) {
-                const auto inside = std::count_if(points.begin(), points.end(), [&](glm::dvec2 p) { return p.x < u && p.y < v; });
+                const auto inside =
+                    std::count_if(points.begin(), points.end(), [&](glm::dvec2 p) { return p.x < u && p.y < v; });
                 worst = std::max(worst, std::abs(static_cast<double>(inside) / n - u * v));
             }
         CAPTURE(n, worst);

@@ -42,7 +42,9 @@ struct ShadowImage {
     float at(int x, int y) const { return psi.values[index(x, y)]; }
     glm::vec3 positionWorld(int x, int y) const;
     double meanOverSurface() const;
-    size_t index(int x, int y) const { return static_cast<size_t>(y) * static_cast<size_t>(psi.width) + static_cast<size_t>(x); }
+    size_t index(int x, int y) const {
+        return static_cast<size_t>(y) * static_cast<size_t>(psi.width) + static_cast<size_t>(x);
+    }
 };
 ShadowImage draw(const Session& session);
 

@@ -17,7 +17,9 @@ constexpr double largestMap = 1024;
 std::shared_ptr<const Scene> emptyFloor(float tilt) { return SceneBuilder().floor(3, tilt).build(); }
 
 // A slab that no ray from the light to the floor can pass.
-std::shared_ptr<const Scene> lidOverFloor() { return SceneBuilder().floor(2).box({-6, 2.2f, -6}, {6, 2.4f, 6}).build(); }
+std::shared_ptr<const Scene> lidOverFloor() {
+    return SceneBuilder().floor(2).box({-6, 2.2f, -6}, {6, 2.4f, 6}).build();
+}
 
 std::shared_ptr<const Scene> boxesOverFloor() {
     return SceneBuilder().floor(3).box({-1, 0, -1}, {0, 1, 0}).box({0.2f, 0.8f, 0.2f}, {0.9f, 1.0f, 1.4f}).build();
@@ -83,7 +85,9 @@ TEST_CASE("every parameter at its minimum, default and maximum gives a finite ψ
     for (const Card* card : catalogue()) {
         Session s = session(boxesOverFloor(), card->id);
         for (Parameter* p : s.techniques.parameters().all()) {
-            for (const double value : {p->spec().min, p->defaultValue(), std::min(p->spec().max, tooLarge(*p, p->spec().max) ? largestMap : p->spec().max)}) {
+            for (const double value :
+                 {p->spec().min, p->defaultValue(),
+                  std::min(p->spec().max, tooLarge(*p, p->spec().max) ? largestMap : p->spec().max)}) {
                 CAPTURE(p->qualifiedName(), value);
                 p->set(p->nearest(value));
                 checkSane(s);
@@ -122,13 +126,21 @@ TEST_CASE("extreme scenes, lights and views give a finite ψ in [0, 1]") {
                 checkSane(s);
             }
         };
-        SECTION(std::string(card->id) + ": light of no size") { with(boxesOverFloor(), [](Session& s) { s.light.size = {0, 0}; }); }
-        SECTION(std::string(card->id) + ": huge light") { with(boxesOverFloor(), [](Session& s) { s.light.size = {170, 170}; }); }
+        SECTION(std::string(card->id) + ": light of no size") {
+            with(boxesOverFloor(), [](Session& s) { s.light.size = {0, 0}; });
+        }
+        SECTION(std::string(card->id) + ": huge light") {
+            with(boxesOverFloor(), [](Session& s) { s.light.size = {170, 170}; });
+        }
         SECTION(std::string(card->id) + ": light inside a box") {
             with(boxesOverFloor(), [](Session& s) { s.light.position = {-0.5f, 0.5f, -0.5f}; });
         }
-        SECTION(std::string(card->id) + ": light on the floor") { with(boxesOverFloor(), [](Session& s) { s.light.position = {1, 0, 1}; }); }
-        SECTION(std::string(card->id) + ": light at its own target") { with(boxesOverFloor(), [](Session& s) { s.light.position = s.light.target; }); }
+        SECTION(std::string(card->id) + ": light on the floor") {
+            with(boxesOverFloor(), [](Session& s) { s.light.position = {1, 0, 1}; });
+        }
+        SECTION(std::string(card->id) + ": light at its own target") {
+            with(boxesOverFloor(), [](Session& s) { s.light.position = s.light.target; });
+        }
         SECTION(std::string(card->id) + ": everything behind the light") {
             with(boxesOverFloor(), [](Session& s) { s.light.target = {0, 9, 0}; });
         }
@@ -158,11 +170,21 @@ TEST_CASE("extreme scenes, lights and views give a finite ψ in [0, 1]") {
             builder.triangle({0, 1, 0}, {1, 1, 0}, {0.5f, 1, 1e-20f});
             with(builder.build(), [](Session&) {});
         }
-        SECTION(std::string(card->id) + ": one pixel") { with(boxesOverFloor(), [](Session& s) { s.size = {1, 1}; }); }
-        SECTION(std::string(card->id) + ": odd picture") { with(boxesOverFloor(), [](Session& s) { s.size = {37, 23}; }); }
-        SECTION(std::string(card->id) + ": empty scene") { with(SceneBuilder().build(), [](Session&) {}); }
-        SECTION(std::string(card->id) + ": empty scene with ground") { with(SceneBuilder().build(), [](Session& s) { s.ground = true; }); }
-        SECTION(std::string(card->id) + ": eye inside a box") { with(boxesOverFloor(), [](Session& s) { s.camera.eye = {-0.5f, 0.5f, -0.5f}; }); }
+        SECTION(std::string(card->id) + ": one pixel") {
+            with(boxesOverFloor(), [](Session& s) { s.size = {1, 1}; });
+        }
+        SECTION(std::string(card->id) + ": odd picture") {
+            with(boxesOverFloor(), [](Session& s) { s.size = {37, 23}; });
+        }
+        SECTION(std::string(card->id) + ": empty scene") {
+            with(SceneBuilder().build(), [](Session&) {});
+        }
+        SECTION(std::string(card->id) + ": empty scene with ground") {
+            with(SceneBuilder().build(), [](Session& s) { s.ground = true; });
+        }
+        SECTION(std::string(card->id) + ": eye inside a box") {
+            with(boxesOverFloor(), [](Session& s) { s.camera.eye = {-0.5f, 0.5f, -0.5f}; });
+        }
     }
 }
 

@@ -18,7 +18,10 @@ std::vector<float> shadowMapOf(const Session& s) {
 }
 
 SceneBuilder someBoxes() {
-    return SceneBuilder().box({-3, -0.2f, -3}, {3, 0, 3}).box({-1, 0, -1}, {0, 1, 0}).box({0.2f, 0.8f, 0.2f}, {0.9f, 1, 1.4f});
+    return SceneBuilder()
+        .box({-3, -0.2f, -3}, {3, 0, 3})
+        .box({-1, 0, -1}, {0, 1, 0})
+        .box({0.2f, 0.8f, 0.2f}, {0.9f, 1, 1.4f});
 }
 
 // A GPU-free bench for flows: one view, a geometry buffer out of nothing, and as many lights as asked for.
@@ -31,10 +34,11 @@ struct Bench {
     Bench() { begin(); }
     void begin() {
         flow.begin();
-        const auto images = flow.pass({.owner = "scene"},
-                                      {.name = "geometry-buffer",
-                                       .work = Compute{"demo.glsl"},
-                                       .writes = {{"depth", Format::R32F, {64, 48}}, {"normal", Format::RGBA16Snorm, {64, 48}}}});
+        const auto images =
+            flow.pass({.owner = "scene"},
+                      {.name = "geometry-buffer",
+                       .work = Compute{"demo.glsl"},
+                       .writes = {{"depth", Format::R32F, {64, 48}}, {"normal", Format::RGBA16Snorm, {64, 48}}}});
         surfaces = GeometryBuffer{images[0], images[1], {}};
     }
     Image build(const Technique& technique, std::string_view id, std::string_view instance, const AreaLight& light) {
@@ -51,7 +55,8 @@ struct Bench {
 } // namespace
 
 TEST_CASE("instances of one technique under two lights keep apart, and equal shadow maps are drawn once") {
-    const auto a = makeTechnique(findCard("pcf")), b = makeTechnique(findCard("pcf")), c = makeTechnique(findCard("pcss"));
+    const auto a = makeTechnique(findCard("pcf")), b = makeTechnique(findCard("pcf")),
+               c = makeTechnique(findCard("pcss"));
     b->parameters().at("kernel").set(9);
     const AreaLight first, second{.position = {2, 5, 0}};
     Bench bench;
@@ -127,18 +132,21 @@ TEST_CASE("stored depth is linear and right, for perspective and directional lig
         const std::vector<float> map = shadowMapOf(s);
         const Flow& flow = renderer().flow();
         const View view = sessionView(s, renderer().state().bounds());
-        const Inputs inputs{view, s.light, {*flow.find("scene.depth"), *flow.find("scene.normal"), {}}, nullptr, 0,
-                            renderer().state().occluders(), 0, 0};
+        const Inputs inputs{view,    s.light, {*flow.find("scene.depth"), *flow.find("scene.normal"), {}},
+                            nullptr, 0,       renderer().state().occluders(),
+                            0,       0};
         const LightViewBlock light = lightView(inputs, lightCentre, 64);
         int compared = 0;
         for (int y = 8; y < 56; y += 5)
             for (int x = 8; x < 56; x += 5) {
                 // The ray through the texel's centre meets the floor y = −tan 30° z at one depth.
                 const glm::vec2 uv((static_cast<float>(x) + 0.5f) / 64, (static_cast<float>(y) + 0.5f) / 64);
-                const glm::vec2 p = glm::vec2(light.window) + (2.0f * uv - 1.0f) * glm::vec2(light.window.z, light.window.w);
+                const glm::vec2 p =
+                    glm::vec2(light.window) + (2.0f * uv - 1.0f) * glm::vec2(light.window.z, light.window.w);
                 const float f = light.sample_reference.z;
                 const glm::vec3 through = glm::vec3(glm::inverse(light.lightFromWorld) * glm::vec4(p, -f, 1));
-                const glm::vec3 from = shape == LightShape::Directional ? through + glm::vec3(0, 100, 0) : s.light.position;
+                const glm::vec3 from =
+                    shape == LightShape::Directional ? through + glm::vec3(0, 100, 0) : s.light.position;
                 const glm::vec3 n(0, std::cos(glm::radians(30.0f)), std::sin(glm::radians(30.0f)));
                 const glm::vec3 ray = through - from;
                 const glm::vec3 hit = from - ray * (glm::dot(n, from) / glm::dot(n, ray));
@@ -176,19 +184,25 @@ TEST_CASE("drawing only the fronts of closed surfaces gives the same map") {
 
 TEST_CASE("a mask has holes in the view and in the shadow, and a texture colours only what wears it") {
     // Left quad: textured, red; right quad: masked, right half transparent; floor: plain.
-    auto scene = std::make_shared<Scene>(*SceneBuilder()
-                                              .floor(3)
-                                              .quad({-1, 1, 0.5f}, {0, 1, 0.5f}, {0, 1, -0.5f}, {-1, 1, -0.5f})
-                                              .quad({0.5f, 1, 0.5f}, {1.5f, 1, 0.5f}, {1.5f, 1, -0.5f}, {0.5f, 1, -0.5f})
-                                              .build());
+    auto scene =
+        std::make_shared<Scene>(*SceneBuilder()
+                                     .floor(3)
+                                     .quad({-1, 1, 0.5f}, {0, 1, 0.5f}, {0, 1, -0.5f}, {-1, 1, -0.5f})
+                                     .quad({0.5f, 1, 0.5f}, {1.5f, 1, 0.5f}, {1.5f, 1, -0.5f}, {0.5f, 1, -0.5f})
+                                     .build());
     scene->textures.push_back({.name = "red", .rgba = {255, 0, 0, 255}});
-    scene->textures.push_back({.name = "half", .width = 2, .rgba = {255, 255, 255, 255, 255, 255, 255, 0}, .wrapU = Wrap::ClampToEdge, .magnifyNearest = true});
+    scene->textures.push_back({.name = "half",
+                               .width = 2,
+                               .rgba = {255, 255, 255, 255, 255, 255, 255, 0},
+                               .wrapU = Wrap::ClampToEdge,
+                               .magnifyNearest = true});
     scene->materials.push_back({.texture = 0, .doubleSided = true});
     scene->materials.push_back({.texture = 1, .masked = true, .doubleSided = true});
     for (size_t m = 2; m < 6; ++m) scene->meshes[m].primitives[0].material = m < 4 ? 1 : 2;
     for (size_t m = 4; m < 6; ++m) {
         const Primitive& p = scene->meshes[m].primitives[0];
-        for (uint32_t v = p.firstVertex; v < p.firstVertex + 3; ++v) scene->uvs[v] = {scene->positions[v].x - 0.5f, 0.5f};
+        for (uint32_t v = p.firstVertex; v < p.firstVertex + 3; ++v)
+            scene->uvs[v] = {scene->positions[v].x - 0.5f, 0.5f};
     }
     Session s = session(scene, "hard");
     s.display.show = Show::Lit;
