@@ -66,15 +66,15 @@ Surfaces drawSurfaces(Flow& flow, const View& view, const SceneState& state, con
                              {"colour", Format::RGBA16F, extent, colourChannels}},
                   .constants = GeometryConstants{viewBlock(view), lastClipFromWorld}};
     draw.defines.push_back({"COLOUR", 2});
-    const bool moving = state.moving() || lastClipFromWorld != view.clipFromWorld;
-    if (moving) {
+    if (state.moving()) { // a still scene's motion follows from the two views
+
         draw.defines.push_back({"MOTION", 3});
         pass.writes.push_back({"motion", Format::RG16F, extent, motionChannels});
     }
     pass.writes.push_back({"z-buffer", Format::Depth32F, extent, zChannels});
     pass.work = draw;
     const Flow::Outputs images = flow.pass(sceneScope, pass);
-    return {{images[0], images[1], moving ? std::optional(images[3]) : std::nullopt}, images[2]};
+    return {{images[0], images[1], state.moving() ? std::optional(images[3]) : std::nullopt}, images[2]};
 }
 
 Image shade(Flow& flow, const Session& session, const View& view, const Surfaces& surfaces, Image shadow) {

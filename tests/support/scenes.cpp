@@ -19,7 +19,14 @@ Renderer& renderer() {
     return made;
 }
 
-const std::vector<std::string>& driverMessages() { return context().messages(); }
+static size_t forgotten = 0;
+
+std::vector<std::string> driverMessages() {
+    const std::vector<std::string>& all = context().messages();
+    return {all.begin() + static_cast<std::ptrdiff_t>(forgotten), all.end()};
+}
+
+void forgetDriverMessages() { forgotten = context().messages().size(); }
 
 SceneBuilder& SceneBuilder::triangle(glm::vec3 a, glm::vec3 b, glm::vec3 c) {
     Primitive primitive{.firstIndex = static_cast<uint32_t>(scene_.indices.size()),

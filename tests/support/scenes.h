@@ -11,7 +11,9 @@ namespace penumbra::test {
 
 // One context and renderer for a whole test program; the test fails if the driver ever complained.
 Renderer& renderer();
-const std::vector<std::string>& driverMessages();
+std::vector<std::string> driverMessages();
+// For tests that make the driver complain on purpose: starts the list anew.
+void forgetDriverMessages();
 
 // Builds a scene of boxes and quads, each a node of its own in world coordinates.
 class SceneBuilder {
