@@ -25,7 +25,7 @@ struct Parameters : ParameterSet {
     ShadowMapParameters map{*this};
     Integer searchTaps{*this,
                        {.id = "search-taps",
-                        .label = "Blocker search taps",
+                        .label = "Search taps",
                         .symbol = "N_b",
                         .value = 16,
                         .min = 1,

@@ -11,6 +11,8 @@ HeadlessContext& context() {
     return made;
 }
 
+size_t forgotten = 0; // driver messages that a test has asked for
+
 } // namespace
 
 Renderer& renderer() {
@@ -18,8 +20,6 @@ Renderer& renderer() {
     static Renderer made;
     return made;
 }
-
-static size_t forgotten = 0;
 
 std::vector<std::string> driverMessages() {
     const std::vector<std::string>& all = context().messages();
