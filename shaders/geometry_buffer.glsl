@@ -64,7 +64,8 @@ void main()
     base *= texture(baseColourTexture, uv);
 #endif
 #ifdef MASKED
-    if (base.a < emissive_cutoff.w) discard;
+    // Coverage from the finest level: coarser ones average it away and thin out what is far.
+    if (textureLod(baseColourTexture, uv, 0.0).a * baseColour.a < emissive_cutoff.w) discard;
 #endif
     // Directions only: the octahedron needs no unit length.
     vec3 towardsEye = view.eyeWorld.xyz - positionWorld;

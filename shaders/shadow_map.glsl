@@ -46,7 +46,7 @@ uniform sampler2D baseColourTexture;
 void main()
 {
 #ifdef MASKED
-    if (texture(baseColourTexture, uv).a * alpha_cutoff.x < alpha_cutoff.y) discard;
+    if (textureLod(baseColourTexture, uv, 0.0).a * alpha_cutoff.x < alpha_cutoff.y) discard;
 #endif
     // Of perspective maps and radial metrics the rasteriser's own depth is not what is stored.
 #if defined(RADIAL)

@@ -17,7 +17,4 @@ struct SceneFacts {
     explicit SceneFacts(std::shared_ptr<const Scene> scene);
 };
 
-// A camera that the scene's file brings along.
-Camera sceneCamera(const SceneFacts& facts, const NamedCamera& camera);
-
 } // namespace penumbra

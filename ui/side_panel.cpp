@@ -263,7 +263,7 @@ void SidePanel::camera(Session& session, const SceneFacts& facts) {
                 const NamedCamera& named = session.scene->cameras[i];
                 ImGui::PushID(static_cast<int>(i));
                 if (ImGui::Selectable(named.name.empty() ? ShortText("camera {}", i + 1).begin() : named.name.c_str()))
-                    camera = sceneCamera(facts, named);
+                    camera = sceneCamera(*facts.scene, facts.pose, named);
                 ImGui::PopID();
             }
             ImGui::EndCombo();

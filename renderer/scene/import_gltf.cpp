@@ -254,8 +254,8 @@ private:
 
         const auto& sparse = model_.accessors[size_t(index)].sparse;
         if (sparse.isSparse) {
-            if (sparse.count < 1 || size_t(sparse.count) > e.count || sparse.indices.byteOffset < 0 ||
-                sparse.values.byteOffset < 0 || !isUnsigned(sparse.indices.componentType))
+            if (sparse.count < 1 || size_t(sparse.count) > e.count || int64_t(sparse.indices.byteOffset) < 0 ||
+                int64_t(sparse.values.byteOffset) < 0 || !isUnsigned(sparse.indices.componentType))
                 file_.refuse(place, "has a sparse part with an impossible count, offset or type");
             const auto count = size_t(sparse.count);
             const Elements at = view(sparse.indices.bufferView, size_t(sparse.indices.byteOffset), count, 1,

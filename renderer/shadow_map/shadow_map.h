@@ -75,6 +75,17 @@ struct BiasParameters : ParameterGroup {
     End end{set};
 };
 
+// For techniques that compare a receiver with more than its own texel.
+struct ReceiverPlane : Flag {
+    explicit ReceiverPlane(ParameterSet& s)
+        : Flag(s, {.id = "receiver-plane",
+                   .label = "Receiver plane",
+                   .value = 1,
+                   .source = "Isidoro 2006; here the plane itself instead of its slope",
+                   .help = "Compares each texel with the depth of the receiver's plane there instead of one depth. Wide "
+                           "kernels and penumbrae then need no more bias than narrow ones."}) {}
+};
+
 // A point on the light, in light space: lightPoint() of scene/light.h. Zero is the light's centre.
 using LightSample = glm::vec2;
 inline constexpr LightSample lightCentre{0, 0};

@@ -86,14 +86,7 @@ struct Parameters : ParameterSet {
                    .programConstant = true,
                    .source = "hardware 2x2 comparison",
                    .help = "Blends the comparisons of the four nearest texels, so that edges move smoothly."}};
-    Flag receiverPlane{*this,
-                       {.id = "receiver-plane",
-                        .label = "Receiver plane",
-                        .value = 1,
-                        .source = "Isidoro 2006; here the plane itself instead of its slope",
-                        .help =
-                            "Compares each texel with the depth of the receiver's plane there instead of one depth. "
-                            "Wide kernels then need no more bias than narrow ones."}};
+    ReceiverPlane receiverPlane{*this};
     BiasParameters bias{*this, {.slope = 0.05, .normalOffset = 0.5}};
 };
 

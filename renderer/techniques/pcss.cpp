@@ -71,14 +71,7 @@ struct Parameters : ParameterSet {
                  .value = 1,
                  .source = "Cranley and Patterson 1976; Jimenez 2014 (noise)",
                  .help = "Shifts or turns the taps differently in every pixel: bands become noise."}};
-    Flag receiverPlane{*this,
-                       {.id = "receiver-plane",
-                        .label = "Receiver plane",
-                        .value = 1,
-                        .source = "Isidoro 2006; here the plane itself instead of its slope",
-                        .help =
-                            "Compares each texel with the depth of the receiver's plane there instead of one depth, "
-                            "without which wide penumbrae need a bias that detaches them."}};
+    ReceiverPlane receiverPlane{*this};
     BiasParameters bias{*this, {.slope = 0.05, .normalOffset = 0.5}};
 };
 
