@@ -22,7 +22,7 @@ constexpr Channel colourChannels[] = {{"red", "", "base colour, linear", Unit::N
                                       {"blue", "", "base colour, linear", Unit::None, 0, 1}};
 constexpr Channel motionChannels[] = {{"x", "", "last frame's place minus this frame's", Unit::Pixels},
                                       {"y", "", "last frame's place minus this frame's", Unit::Pixels}};
-constexpr Channel zChannels[] = {{"z", "", "the rasteriser's own depth", Unit::None, 0, 1}};
+constexpr Channel zChannels[] = {{"z", "", "the rasteriser's own depth; 1: near plane, 0: far plane", Unit::None, 0, 1}};
 constexpr Channel litChannels[] = {{"red", "", "reflected light, linear"},
                                    {"green", "", "reflected light, linear"},
                                    {"blue", "", "reflected light, linear"}};
@@ -58,7 +58,8 @@ Surfaces drawSurfaces(Flow& flow, const View& view, const SceneState& state, con
               .geometry = geometry,
               .poseVersion = state.poseVersion(),
               .faces = Faces::AsMaterial,
-              .textured = true};
+              .textured = true,
+              .reversedDepth = true};
     PassSpec pass{.stage = Stage::Scene,
                   .name = "geometry-buffer",
                   .writes = {{"depth", Format::R32F, extent, depthChannels},
@@ -107,11 +108,11 @@ Image show(Flow& flow, const Session& session, Image shown) {
 } // namespace
 
 View sessionView(const Session& session, const Bounds& bounds) {
-    // Between the nearest and the farthest corner of the scene; never nearer than 1/10000 of the farthest.
+    // Between the nearest and the farthest corner of the scene; never nearer than 1/100000 of the farthest.
     const float reach =
         bounds.empty() ? 1.0f : glm::distance(session.camera.eye, bounds.centre()) + 0.5f * bounds.diagonal();
     const float far = std::max(1.01f * reach, 1e-6f);
-    return makeView(session.camera, session.size, far * 1e-4f, far);
+    return makeView(session.camera, session.size, far * 1e-5f, far);
 }
 
 Frame buildFrame(Flow& flow, const Session& session, const SceneState& state, const Geometry* geometry,

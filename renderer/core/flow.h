@@ -89,7 +89,7 @@ struct Compute {
 enum class Faces : uint8_t { Both, Front, Back, AsMaterial, Nearest };
 
 // Geometry through the rasteriser, onto all written images and a depth buffer of its own or the written depth image.
-// A colour image is cleared to `clear`, depth to 1.
+// Clip depth is in [0, 1]. A colour image is cleared to `clear`, depth to its far end.
 struct Draw {
     std::string_view shader;
     Defines defines = {};
@@ -98,6 +98,7 @@ struct Draw {
     Faces faces = Faces::Both;
     bool castersOnly = false;
     bool textured = false;   // the shader looks at base colour textures, not only at the masks of some
+    bool reversedDepth = false; // nearer is greater: the far end is 0, else 1
     bool depthClamp = false; // keep what lies before the near plane
     int border = 0;          // texels along the edge that stay cleared
     float clear[4] = {0, 0, 0, 0};

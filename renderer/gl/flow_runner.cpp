@@ -151,11 +151,12 @@ void FlowRunner::runDraw(const Flow& flow, const Flow::PassNode& pass, const Dra
     glColorMask(GL_TRUE, GL_TRUE, GL_TRUE, GL_TRUE);
     const auto set = [](GLenum capability, bool on) { on ? glEnable(capability) : glDisable(capability); };
     set(GL_DEPTH_TEST, hasDepth);
-    glDepthFunc(GL_LESS);
+    glDepthFunc(draw.reversedDepth ? GL_GREATER : GL_LESS);
+    glClipControl(GL_LOWER_LEFT, GL_ZERO_TO_ONE);
     set(GL_DEPTH_CLAMP, draw.depthClamp);
     glDisable(GL_SCISSOR_TEST);
     for (GLsizei i = 0; i < colours; ++i) glClearNamedFramebufferfv(target, GL_COLOR, i, draw.clear);
-    constexpr float far = 1;
+    const float far = draw.reversedDepth ? 0 : 1;
     if (hasDepth) glClearNamedFramebufferfv(target, GL_DEPTH, 0, &far);
 
     if (draw.geometry) {
@@ -168,6 +169,7 @@ void FlowRunner::runDraw(const Flow& flow, const Flow::PassNode& pass, const Dra
     }
     glBindFramebuffer(GL_DRAW_FRAMEBUFFER, 0);
     set(GL_SCISSOR_TEST, false);
+    glClipControl(GL_LOWER_LEFT, GL_NEGATIVE_ONE_TO_ONE);
     set(GL_DEPTH_CLAMP, false);
     set(GL_DEPTH_TEST, false);
 }

@@ -33,7 +33,8 @@ View makeView(const Camera& camera, glm::ivec2 size, float near, float far) {
     view.tanHalfFovY = std::tan(0.5f * glm::radians(camera.fovY));
 
     const float aspect = float(size.x) / float(size.y);
-    view.clipFromWorld = glm::perspectiveRH_NO(glm::radians(camera.fovY), aspect, near, far) * view.eyeFromWorld;
+    // Near and far change places: see View::clipFromWorld.
+    view.clipFromWorld = glm::perspectiveRH_ZO(glm::radians(camera.fovY), aspect, far, near) * view.eyeFromWorld;
 
     // The rows of the rotation are the eye's axes in the world.
     const glm::mat3 worldFromEye = glm::transpose(glm::mat3(view.eyeFromWorld));

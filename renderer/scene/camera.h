@@ -21,6 +21,8 @@ glm::mat4 eyeFromWorld(const Camera& camera);
 // drawn; they come from the scene's bounds so that no setting can cut it.
 struct View {
     glm::mat4 eyeFromWorld{1};
+    // Clip depth z / w runs from 1 at the near plane to 0 at the far one: a float z-buffer is then about as precise far
+    // away as it is near.
     glm::mat4 clipFromWorld{1};
     glm::vec3 eyeWorld{0};
     // A pixel's ray, scaled so that its eye depth is 1: worldFromDepth = eyeWorld + depth · (rayCorner + x·rayDx +

@@ -123,13 +123,13 @@ LightViewBlock lightView(const Inputs& inputs, LightSample s, int size) {
         // x = (P.x + s.x (d − f) − c.x) / h with d = −z
         rows[0] = vec4(1, 0, -s.x, -s.x * f - centre.x) / h;
         rows[1] = vec4(0, 1, -s.y, -s.y * f - centre.y) / h;
-        rows[2] = vec4(0, 0, -2, -(fit.far + fit.near)) / (fit.far - fit.near);
+        rows[2] = vec4(0, 0, -1, -fit.near) / (fit.far - fit.near);
         rows[3] = vec4(0, 0, 0, 1);
     } else {
         // w = d; x w = ((s.x − c.x) d + (P.x − s.x) f) / h
         rows[0] = vec4(f, 0, -(s.x - centre.x), -s.x * f) / h;
         rows[1] = vec4(0, f, -(s.y - centre.y), -s.y * f) / h;
-        rows[2] = vec4(0, 0, -(fit.far + fit.near), -2 * fit.far * fit.near) / (fit.far - fit.near);
+        rows[2] = vec4(0, 0, -fit.far, -fit.far * fit.near) / (fit.far - fit.near);
         rows[3] = vec4(0, 0, -1, 0);
     }
     LightViewBlock block;

@@ -360,9 +360,10 @@ TEST_CASE("a picture is checked before it is decoded") {
     CHECK(messageOf(file).find("no such file") != std::string::npos);
     folder.write("picture.png", "no picture");
     CHECK(messageOf(file).find("cannot be decoded") != std::string::npos);
-    // The head of a PNG of 17,000 x 1 texels.
+    // A PNG of 17,000 x 1 texels that has none of them.
     const std::string head("\x89PNG\r\n\x1a\n\0\0\0\rIHDR\0\0\x42\x68\0\0\0\1\x08\6\0\0\0\0\0\0\0", 33);
-    folder.write("picture.png", head);
+    const std::string noTexels("\0\0\0\0IDAT\0\0\0\0", 12);
+    folder.write("picture.png", head + noTexels);
     const std::string message = messageOf(file);
     CAPTURE(message);
     CHECK(message.find("17000x1 texels") != std::string::npos);
