@@ -37,8 +37,9 @@ std::array<vec3, 8> cornersInLight(const Bounds& box, const mat4& lightFromWorld
 }
 
 struct Fit {
-    float near, far, reference;
+    float near, far, reference; // axial depths
     Window window;
+    float farthest = 1; // from any point of the light
 };
 
 // Where the box's corners fall on the reference plane, from every corner of the light. Parts before the near plane are
@@ -61,11 +62,12 @@ Window project(const std::array<vec3, 8>& corners, const Fit& fit, vec2 halfLigh
 
 Fit fitMap(const AreaLight& light, std::span<const Occluder> occluders, const mat4& fromWorld, vec2 half) {
     const bool directional = light.shape == LightShape::Directional;
-    float nearest = 1e30f, farthest = -1e30f;
+    float nearest = 1e30f, farthest = -1e30f, radius = 0;
     for (const Occluder& occluder : occluders) {
         for (const vec3& c : cornersInLight(occluder.boundsWorld, fromWorld)) {
             if (occluder.casts) nearest = std::min(nearest, c.z);
             farthest = std::max(farthest, c.z);
+            radius = std::max(radius, glm::length(c));
         }
     }
     Fit fit{0, 1, 1, {{-1, -1}, {1, 1}}};
@@ -77,6 +79,7 @@ Fit fitMap(const AreaLight& light, std::span<const Occluder> occluders, const ma
     fit.near = directional ? nearest - slack : std::max(nearest - slack, nearestShare * fit.far);
     fit.far = std::max(fit.far, fit.near + slack);
     fit.reference = fit.far;
+    fit.farthest = radius + glm::length(half) + slack;
 
     Window casters, receivers;
     for (const Occluder& occluder : occluders) {
@@ -103,9 +106,12 @@ Fit fitMap(const AreaLight& light, std::span<const Occluder> occluders, const ma
 
 } // namespace
 
-LightViewBlock lightView(const Inputs& inputs, LightSample s, int size) {
+LightViewBlock lightView(const Inputs& inputs, const ShadowMapDescription& description) {
+    const LightSample s = description.sample;
+    const int size = description.size;
     const AreaLight& light = inputs.light;
-    const bool directional = light.shape == LightShape::Directional;
+    const bool directional = light.shape == LightShape::Directional, radial = description.metric == Metric::Radial;
+    ensure(!(directional && radial), "a directional light has no point to measure radial depth from");
     const mat4 fromWorld = lightFromWorld(light);
     const vec2 half = halfSize(light);
     const Fit fit = fitMap(light, inputs.occluders, fromWorld, half);
@@ -137,7 +143,8 @@ LightViewBlock lightView(const Inputs& inputs, LightSample s, int size) {
     block.clipFromWorld = glm::transpose(rows) * fromWorld;
     block.sample_reference = {s, f, directional ? 1.0f : 0.0f};
     block.window = {centre, h, h};
-    block.range = {fit.near, fit.far, 1 / (fit.far - fit.near), 0};
+    const float far = radial ? fit.farthest : fit.far;
+    block.range = {fit.near, far, 1 / (far - fit.near), radial ? 1.0f : 0.0f};
     block.light = {half, size, 1.0f / static_cast<float>(size)};
     return block;
 }
@@ -159,11 +166,13 @@ bool seesFromOutside(const Inputs& inputs, const LightViewBlock& view) {
 
 } // namespace
 
-Image drawShadowMap(Flow& flow, Scope scope, const Inputs& inputs, const LightViewBlock& view, Faces faces) {
+ShadowMap drawShadowMap(Flow& flow, Scope scope, const Inputs& inputs, const ShadowMapDescription& description) {
     static constexpr Channel channels[] = {{"depth", "z",
                                             "linear depth from the light, (d − near) / (far − near); 1: nothing casts",
                                             Unit::DepthRange, 0, 1}};
-    const int size = static_cast<int>(view.light.z);
+    const LightViewBlock view = lightView(inputs, description);
+    const Faces faces = description.faces;
+    const Extent extent{description.size, description.size};
     Draw draw{.shader = "shadow_map.glsl",
               .geometry = inputs.geometry,
               .poseVersion = inputs.poseVersion,
@@ -172,12 +181,13 @@ Image drawShadowMap(Flow& flow, Scope scope, const Inputs& inputs, const LightVi
               .depthClamp = true,
               .border = borderTexels};
     // The rasteriser's depth of an orthographic map is the stored depth already.
-    if (view.sample_reference.w == 0) draw.defines.push_back({"LINEAR_DEPTH"});
-    return flow.pass(scope, {.stage = Stage::ShadowMap,
-                             .name = "shadow-map",
-                             .work = draw,
-                             .writes = {{"shadow-map", Format::Depth32F, {size, size}, channels}},
-                             .constants = view});
+    if (view.sample_reference.w == 0) draw.defines.push_back({view.range.w != 0 ? "RADIAL" : "LINEAR_DEPTH"});
+    const Image depth = flow.pass(scope, {.stage = Stage::ShadowMap,
+                                          .name = "shadow-map",
+                                          .work = draw,
+                                          .writes = {{"shadow-map", Format::Depth32F, extent, channels}},
+                                          .constants = view});
+    return {depth, view};
 }
 
 ViewBlock viewBlock(const View& view) {

@@ -7,6 +7,21 @@
 
 namespace penumbra {
 
+// A point on the light, in light space: lightPoint() of scene/light.h. Zero is the light's centre.
+using LightSample = glm::vec2;
+inline constexpr LightSample lightCentre{0, 0};
+
+// What depth means: along the light's axis, or from the light's point (not for directional lights).
+enum class Metric { Axial, Radial };
+
+// Everything that makes one shadow map another; equal descriptions under one light are one map.
+struct ShadowMapDescription {
+    int size = 1024; // texels along a side
+    Faces faces = Faces::Both;
+    LightSample sample = lightCentre;
+    Metric metric = Metric::Axial;
+};
+
 // What every technique that reads a shadow map lets its user turn.
 struct ShadowMapParameters : ParameterGroup {
     explicit ShadowMapParameters(ParameterSet& s) : ParameterGroup(s, "Shadow map") {}
@@ -28,6 +43,8 @@ struct ShadowMapParameters : ParameterGroup {
                                  "objects, but leak light at thin ones.",
                          .choices = facesNames}};
     End end{set};
+
+    ShadowMapDescription describe(LightSample sample = lightCentre) const { return {size, faces, sample}; }
 
     static constexpr std::string_view facesNames[] = {"both", "front", "back"};
 };
@@ -78,24 +95,25 @@ struct BiasParameters : ParameterGroup {
 // For techniques that compare a receiver with more than its own texel.
 struct ReceiverPlane : Flag {
     explicit ReceiverPlane(ParameterSet& s)
-        : Flag(s, {.id = "receiver-plane",
-                   .label = "Receiver plane",
-                   .value = 1,
-                   .source = "Isidoro 2006; here the plane itself instead of its slope",
-                   .help = "Compares each texel with the depth of the receiver's plane there instead of one depth. Wide "
-                           "kernels and penumbrae then need no more bias than narrow ones."}) {}
+        : Flag(s,
+               {.id = "receiver-plane",
+                .label = "Receiver plane",
+                .value = 1,
+                .source = "Isidoro 2006; here the plane itself instead of its slope",
+                .help = "Compares each texel with the depth of the receiver's plane there instead of one depth. Wide "
+                        "kernels and penumbrae then need no more bias than narrow ones."}) {}
 };
 
-// A point on the light, in light space: lightPoint() of scene/light.h. Zero is the light's centre.
-using LightSample = glm::vec2;
-inline constexpr LightSample lightCentre{0, 0};
+// The projection of a map. The window and the depth range are fitted to all casters and receivers as seen from the
+// whole light, so they are the same for every sample.
+LightViewBlock lightView(const Inputs& inputs, const ShadowMapDescription& description);
 
-// The projection of a map of size² texels from a point of the light. The window is fitted to all casters and receivers
-// as seen from the whole light, so it is the same for every sample.
-LightViewBlock lightView(const Inputs& inputs, LightSample sample, int size);
-
-// Draws the map: one Depth32F image "shadow-map" of linear axial depth in [0, 1], 1 where nothing casts.
-Image drawShadowMap(Flow& flow, Scope scope, const Inputs& inputs, const LightViewBlock& view, Faces faces);
+// Draws a map: one Depth32F image "shadow-map" of linear depth in [0, 1], 1 where nothing casts.
+struct ShadowMap {
+    Image depth;
+    LightViewBlock view;
+};
+ShadowMap drawShadowMap(Flow& flow, Scope scope, const Inputs& inputs, const ShadowMapDescription& description);
 
 // The front of the constants of every pass that includes shaders/resolve.glsl.
 struct ResolveConstants {

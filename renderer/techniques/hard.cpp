@@ -15,11 +15,10 @@ class Hard final : public Technique {
 public:
     ParameterSet& parameters() override { return parameters_; }
     Image build(Flow& flow, Scope scope, const Inputs& inputs) const override {
-        const LightViewBlock light = lightView(inputs, lightCentre, parameters_.map.size);
-        const Image map = drawShadowMap(flow, scope, inputs, light, parameters_.map.faces);
+        const ShadowMap map = drawShadowMap(flow, scope, inputs, parameters_.map.describe());
         return resolve(flow, scope, inputs,
-                       {.shader = "techniques/hard.glsl", .constants = resolveConstants(inputs, light)},
-                       {{"shadowMap", map}}, parameters_);
+                       {.shader = "techniques/hard.glsl", .constants = resolveConstants(inputs, map.view)},
+                       {{"shadowMap", map.depth}}, parameters_);
     }
 
 private:

@@ -10,7 +10,7 @@ class None final : public Technique {
 public:
     ParameterSet& parameters() override { return parameters_; }
     Image build(Flow& flow, Scope scope, const Inputs& inputs) const override {
-        const LightViewBlock light = lightView(inputs, lightCentre, 1);
+        const LightViewBlock light = lightView(inputs, {.size = 1});
         return resolve(flow, scope, inputs,
                        {.shader = "techniques/none.glsl", .constants = resolveConstants(inputs, light)}, {},
                        parameters_);

@@ -137,10 +137,9 @@ class Pcf final : public Technique {
 public:
     ParameterSet& parameters() override { return parameters_; }
     Image build(Flow& flow, Scope scope, const Inputs& inputs) const override {
-        const LightViewBlock light = lightView(inputs, lightCentre, parameters_.map.size);
-        const Image map = drawShadowMap(flow, scope, inputs, light, parameters_.map.faces);
+        const ShadowMap map = drawShadowMap(flow, scope, inputs, parameters_.map.describe());
         PcfConstants constants{};
-        constants.resolve = resolveConstants(inputs, light);
+        constants.resolve = resolveConstants(inputs, map.view);
         if (parameters_.shape == Shape::Poisson) {
             int i = 0;
             for (const vec2 p : poissonDisk(parameters_.taps)) {
@@ -152,7 +151,7 @@ public:
         }
         return resolve(flow, scope, inputs,
                        {.shader = "techniques/pcf.glsl", .constants = constants, .table = tableSize},
-                       {{"shadowMap", map}}, parameters_);
+                       {{"shadowMap", map.depth}}, parameters_);
     }
 
 private:

@@ -126,7 +126,7 @@ TEST_CASE("a PCF box of n texels has a linear edge n texels wide") {
     const Inputs inputs{image.view, s.light, {*flow.find("scene.depth"), *flow.find("scene.normal"), {}},
                         nullptr,    0,       renderer().state().occluders(),
                         0,          0};
-    const LightViewBlock light = lightView(inputs, lightCentre, 1024);
+    const LightViewBlock light = lightView(inputs, {});
     // On the floor, which lies at depth H; the reference plane lies at f.
     const double halfWidth = 0.5 * 31 * 2 * light.window.z / 1024 * H / light.sample_reference.z;
     int pixels = 0;

@@ -90,9 +90,9 @@ TEST_CASE("a map does not swim: what lies on the reference plane stays at its te
         const AreaLight light{.shape = shape, .position = {1, 5, 1}, .target = {0, 0, 0}, .size = {1, 1}};
         const Inputs inputs{bench.view, light, *bench.surfaces, nullptr, 1, bench.occluders, 0, 0};
         const glm::vec2 half = halfSize(light);
-        const LightViewBlock centre = lightView(inputs, lightCentre, 256);
+        const LightViewBlock centre = lightView(inputs, {.size = 256});
         for (const glm::vec2 s : {half, -half, glm::vec2(half.x, -half.y)}) {
-            const LightViewBlock view = lightView(inputs, s, 256);
+            const LightViewBlock view = lightView(inputs, {.size = 256, .sample = s});
             CHECK(view.window == centre.window);
             CHECK(view.range == centre.range);
             const float f = view.sample_reference.z;
@@ -112,7 +112,7 @@ TEST_CASE("the map covers every caster from every corner of the light") {
         const Inputs inputs{bench.view, light, *bench.surfaces, nullptr, 1, bench.occluders, 0, 0};
         const glm::vec2 half = halfSize(light);
         for (const glm::vec2 s : {lightCentre, half, -half}) {
-            const LightViewBlock view = lightView(inputs, s, 256);
+            const LightViewBlock view = lightView(inputs, {.size = 256, .sample = s});
             for (int i = 0; i < 8; ++i) {
                 const glm::vec4 corner(i & 1 ? 1 : -1, i & 2 ? 1 : 0, i & 4 ? 1 : -1, 1);
                 const glm::vec4 clip = view.clipFromWorld * corner;
@@ -135,7 +135,7 @@ TEST_CASE("stored depth is linear and right, for perspective and directional lig
         const Inputs inputs{view,    s.light, {*flow.find("scene.depth"), *flow.find("scene.normal"), {}},
                             nullptr, 0,       renderer().state().occluders(),
                             0,       0};
-        const LightViewBlock light = lightView(inputs, lightCentre, 64);
+        const LightViewBlock light = lightView(inputs, {.size = 64});
         int compared = 0;
         for (int y = 8; y < 56; y += 5)
             for (int x = 8; x < 56; x += 5) {
@@ -158,6 +158,28 @@ TEST_CASE("stored depth is linear and right, for perspective and directional lig
             }
         CHECK(compared > 20);
     }
+}
+
+TEST_CASE("a radial map stores the distance from the light's point") {
+    (void)renderer(); // for its context
+    Bench bench;
+    AreaLight light{.position = {1, 5, 1}, .target = {0, 0, 0}, .size = {2, 2}};
+    const Inputs inputs{bench.view, light, *bench.surfaces, nullptr, 1, bench.occluders, 0, 0};
+    const ShadowMapDescription axial{.size = 64}, radial{.size = 64, .metric = Metric::Radial};
+    const ShadowMap a = drawShadowMap(bench.flow, {"a", "demo"}, inputs, axial);
+    const ShadowMap b = drawShadowMap(bench.flow, {"b", "demo"}, inputs, radial);
+    CHECK_FALSE(a.depth == b.depth);
+    for (const glm::vec2 s : {lightCentre, halfSize(light), -halfSize(light)}) {
+        const LightViewBlock view = lightView(inputs, {.size = 64, .sample = s, .metric = Metric::Radial});
+        CHECK(view.range == b.view.range);
+        for (int i = 0; i < 8; ++i) {
+            const glm::vec4 corner(i & 1 ? 1 : -1, i & 2 ? 1 : 0, i & 4 ? 1 : -1, 1);
+            const float distance = glm::length(glm::vec3(view.lightFromWorld * corner) - glm::vec3(s, 0));
+            CHECK((distance >= view.range.x && distance <= view.range.y)); // z stays in [0, 1]
+        }
+    }
+    light.shape = LightShape::Directional;
+    CHECK_THROWS_AS(lightView(inputs, radial), std::logic_error);
 }
 
 TEST_CASE("drawing only the fronts of closed surfaces gives the same map") {
@@ -237,4 +259,26 @@ TEST_CASE("a mask has holes in the view and in the shadow, and a texture colours
     CHECK(plain > 1000);
     CHECK(holes > 20);
     CHECK(driverMessages().empty());
+}
+
+TEST_CASE("layers 5 cm apart do not fight a kilometre away") {
+    const auto scene = SceneBuilder()
+                           .floor(1000)
+                           .quad({-900, 0.05f, 900}, {900, 0.05f, 900}, {900, 0.05f, -900}, {-900, 0.05f, -900})
+                           .build();
+    Session s = session(scene, "none");
+    s.camera = {.eye = {1000, 300, 1000}, .target = {0, 0, 0}};
+    s.size = {160, 120};
+    const ShadowImage image = draw(s);
+    int checked = 0, wrong = 0;
+    for (int y = 0; y < image.psi.height; ++y)
+        for (int x = 0; x < image.psi.width; ++x) {
+            if (!image.surface(x, y)) continue;
+            const glm::vec3 p = image.positionWorld(x, y);
+            if (std::max(std::abs(p.x), std::abs(p.z)) > 890) continue;
+            ++checked;
+            wrong += std::abs(p.y - 0.05f) > 0.025f;
+        }
+    CHECK(checked > 2000);
+    CHECK(wrong == 0);
 }
