@@ -98,7 +98,7 @@ constexpr ValueOption commonOptions[] = {
      &Options::lightSize},
     {"--ground", "on|off", "a plane below the scene; without this, where the scene has no floor", &Options::ground},
     {"--time", "T", "time of the animation in seconds", &Options::time},
-    {"--show", "lit|shadow", "the lit picture or the shadow image alone", &Options::show},
+    {"--show", "lit|shadow", "the lit picture, or the shadows alone: white is lit", &Options::show},
     {"--exposure", "STOPS", "brightness of the picture", &Options::exposure},
     {"--ambient", "FRACTION", "light from everywhere, relative to the light's", &Options::ambient},
     {"--texture-limit", "MIB", "most memory that textures may take", &Options::textureLimit},

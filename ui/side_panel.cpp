@@ -277,7 +277,7 @@ void displayControls(DisplaySettings& display) {
     if (ImGui::RadioButton("lit", display.show == Show::Lit)) display.show = Show::Lit;
     tooltip("The scene in its light (V)");
     ImGui::SameLine();
-    if (ImGui::RadioButton("shadow  ψ", display.show == Show::Shadow)) display.show = Show::Shadow;
+    if (ImGui::RadioButton("shadows  1 − ψ", display.show == Show::Shadow)) display.show = Show::Shadow;
     tooltip("The shadow image as a picture: white sees all of the light, black none of it (V)");
     row("Exposure");
     dragNumber("##exposure", display.exposure, 0.02f, limits::exposure, "%+.2f stops");

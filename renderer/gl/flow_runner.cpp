@@ -26,7 +26,8 @@ std::string_view shaderOf(const Work& work) {
 FlowRunner::FlowRunner(ProgramLibrary& programs) : programs_(programs) {
     GLuint name = 0;
     glCreateFramebuffers(1, &name);
-    framebuffer_ = Handle<destroyNames>(name);
+    framebuffer_ = Handle<destroyFramebuffer>(name);
+    glObjectLabel(GL_FRAMEBUFFER, name, -1, "draw passes");
 }
 
 int FlowRunner::turnOf(const Flow::ImageNode& node) const {

@@ -35,8 +35,7 @@ private:
         Texture texture;
         uint64_t lastUsed;
     };
-    static void destroyNames(GLuint name) { glDeleteFramebuffers(1, &name); }
-    static void destroyVertexArray(GLuint name) { glDeleteVertexArrays(1, &name); }
+    static void destroyFramebuffer(GLuint name) { glDeleteFramebuffers(1, &name); }
 
     int turnOf(const Flow::ImageNode& node) const;
     const Slot* find(int label, int turn) const;
@@ -50,7 +49,7 @@ private:
     Samplers samplers_;
     std::vector<std::unique_ptr<Slot>> slots_;
     UniformRing uniforms_;
-    Handle<destroyNames> framebuffer_;
+    Handle<destroyFramebuffer> framebuffer_;
     PassTimer timer_;
     uint64_t frame_ = 0;
 };

@@ -123,6 +123,7 @@ GpuScene::GpuScene(const SceneState& state) {
     GLuint vao = 0;
     glCreateVertexArrays(1, &vao);
     vertexArray_ = Handle<destroyVertexArray>(vao);
+    glObjectLabel(GL_VERTEX_ARRAY, vao, -1, "scene");
     const auto attribute = [&](GLuint location, const Buffer& buffer, GLint components, GLsizei stride) {
         glVertexArrayVertexBuffer(vao, location, buffer.name(), 0, stride);
         glVertexArrayAttribFormat(vao, location, components, GL_FLOAT, GL_FALSE, 0);
