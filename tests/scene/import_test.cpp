@@ -342,7 +342,7 @@ TEST_CASE("what does not fit is refused with file and place") {
 TEST_CASE("a link out of the scene's folder is not followed") {
     const Folder folder;
     folder.write("secret.bin", std::string(60, 'x'));
-    folder.write("scene/placeholder", "");
+    folder.write("scene/beside", "");
     json scene = square();
     scene["buffers"][0]["uri"] = "link.bin";
     const fs::path file = folder.write("scene/linked.gltf", scene.dump());
