@@ -17,12 +17,13 @@ constexpr Channel normalChannels[] = {{"geometric-x", "n", "geometric normal, wo
                                       {"geometric-y", "n", "geometric normal, world, octahedral", Unit::None, -1, 1},
                                       {"shading-x", "n", "interpolated normal, world, octahedral", Unit::None, -1, 1},
                                       {"shading-y", "n", "interpolated normal, world, octahedral", Unit::None, -1, 1}};
-constexpr Channel colourChannels[] = {{"red", "", "base colour, linear", Unit::None, 0, 1},
-                                      {"green", "", "base colour, linear", Unit::None, 0, 1},
-                                      {"blue", "", "base colour, linear", Unit::None, 0, 1}};
+constexpr Channel colourChannels[] = {{"red", "", "square root of the linear base colour", Unit::None, 0, 1},
+                                      {"green", "", "square root of the linear base colour", Unit::None, 0, 1},
+                                      {"blue", "", "square root of the linear base colour", Unit::None, 0, 1}};
 constexpr Channel motionChannels[] = {{"x", "", "last frame's place minus this frame's", Unit::Pixels},
                                       {"y", "", "last frame's place minus this frame's", Unit::Pixels}};
-constexpr Channel zChannels[] = {{"z", "", "the rasteriser's own depth; 1: near plane, 0: far plane", Unit::None, 0, 1}};
+constexpr Channel zChannels[] = {
+    {"z", "", "the rasteriser's own depth; 1: near plane, 0: far plane", Unit::None, 0, 1}};
 constexpr Channel litChannels[] = {{"red", "", "reflected light, linear"},
                                    {"green", "", "reflected light, linear"},
                                    {"blue", "", "reflected light, linear"}};
@@ -64,7 +65,7 @@ Surfaces drawSurfaces(Flow& flow, const View& view, const SceneState& state, con
                   .name = "geometry-buffer",
                   .writes = {{"depth", Format::R32F, extent, depthChannels},
                              {"normal", Format::RGBA16Snorm, extent, normalChannels},
-                             {"colour", Format::RGBA16F, extent, colourChannels}},
+                             {"colour", Format::RGBA8, extent, colourChannels}},
                   .constants = GeometryConstants{viewBlock(view), lastClipFromWorld}};
     draw.defines.push_back({"COLOUR", 2});
     if (state.moving()) { // a still scene's motion follows from the two views

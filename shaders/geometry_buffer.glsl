@@ -77,7 +77,7 @@ void main()
     normal = vec4(octahedralFromDirection(geometric), octahedralFromDirection(shading));
     depth = 1.0 / gl_FragCoord.w; // clip w is the eye depth
 #ifdef COLOUR
-    colour = vec4(base.rgb, 1.0) + vec4(emissive_cutoff.xyz, 0.0);
+    colour = vec4(sqrt(min(base.rgb + emissive_cutoff.xyz, 1.0)), 1.0); // in 8 bits as even to the eye as sRGB
 #endif
 #ifdef MOTION
     motion = (lastClip.xy / lastClip.w - clip.xy / clip.w) * 0.5 * view.size.xy;

@@ -25,7 +25,7 @@ Lookup makeLookup(Receiver r, float constantBias, float slopeTexels, bool withPl
 {
     Lookup l;
     float size = lightView.light.z;
-    vec2 metresPerTexel = 2.0 * lightView.window.zw / size;
+    vec2 metresPerTexel = 2.0 * lightView.window.zw * lightView.light.w;
     l.texel = ((r.reference - lightView.window.xy) / (2.0 * lightView.window.zw) + 0.5) * size;
     // Where the sample point of the light grazes or lies below the surface, its plane says nothing.
     bool lit = directional ? r.facing > 1e-4 : r.facing < -1e-4 * r.d;

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: MIT
 // Point sets for filters: the same points everywhere, shifted and turned by one hash of the pixel.
 
-// A set of n points is walked with next() from a start; the steps cost a few instructions and no table.
+// A set of n points is walked step by step from a start; a step costs a few instructions and no table. `share` is 1 / n.
 
 // The lattice (i / n, i / golden ratio) on the torus: one axis in n even strata, the other nearly so, and as even in the
 // plane as the Fibonacci lattice. `shift` moves the whole set (Cranley and Patterson 1976). Points in [0, 1)².
-vec2 latticeNext(vec2 point, int n)
+vec2 latticeNext(vec2 point, float share)
 {
-    return fract(point + vec2(1.0f / float(n), 0.61803399f));
+    return fract(point + vec2(share, 0.61803399f));
 }
 
 // Vogel's spiral in the unit disk: the i-th of n points lies at radius √((i + ½) / n), a golden angle beyond the one
@@ -19,9 +19,9 @@ vec2 spiralNext(vec2 direction)
     return vec2(c * direction.x - s * direction.y, s * direction.x + c * direction.y);
 }
 
-vec2 spiralPoint(vec2 direction, int i, int n)
+vec2 spiralPoint(vec2 direction, int i, float share)
 {
-    return direction * sqrt((float(i) + 0.5f) / float(n));
+    return direction * sqrt((float(i) + 0.5f) * share);
 }
 
 // Interleaved gradient noise (Jimenez 2014) in [0, 1): neighbours differ much, any 3x3 block is nearly uniform.

@@ -19,13 +19,13 @@ Taps firstTap(vec2 shift)
 #endif
 }
 
-Taps nextTap(Taps t, int i, int n)
+Taps nextTap(Taps t, int i, float share)
 {
 #if ROUND
     t.state = spiralNext(t.state);
-    t.offset = spiralPoint(t.state, i, n);
+    t.offset = spiralPoint(t.state, i, share);
 #else
-    t.state = latticeNext(t.state, n);
+    t.state = latticeNext(t.state, share);
     t.offset = 2.0 * t.state - 1.0;
 #endif
     return t;
@@ -43,12 +43,14 @@ void main()
     const vec2 smallest = vec2(1.0);
 
     vec2 search = max(penumbraHalfSize(halfLight, r.d, lightView.range.x, f, directional) * texelsPerMetre, smallest);
+    float searchShare = 1.0 / float(searchTaps);
+    float filterShare = 1.0 / float(filterTaps);
     int searched = r.known < 0.0 ? searchTaps : 0;
     float depths = 0.0;
     float blockers = 0.0;
     Taps t = firstTap(shift);
     for (int i = 0; i < searched; ++i) {
-        t = nextTap(t, i, searchTaps);
+        t = nextTap(t, i, searchShare);
         #if SEARCH == SEARCH_CENTRED
         vec2 corner = floor(l.texel + search * t.offset * abs(t.offset));
 #else
@@ -65,8 +67,8 @@ void main()
     float sum = 0.0;
     t = firstTap(shift);
     for (int i = 0; i < filtered; ++i) {
-        t = nextTap(t, i, filterTaps);
+        t = nextTap(t, i, filterShare);
         sum += blocksAt(l, l.texel + penumbra * t.offset);
     }
-    writeShadow(r, sum / float(filterTaps));
+    writeShadow(r, sum * filterShare);
 }

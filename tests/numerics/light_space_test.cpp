@@ -133,7 +133,7 @@ TEST_CASE("filter points are even: strata, density and range") {
         std::vector<int> x(static_cast<size_t>(n)), y(static_cast<size_t>(n));
         glm::vec2 point(0.3f, 0.8f);
         for (int i = 0; i < n; ++i) {
-            point = f32::latticeNext(point, n);
+            point = f32::latticeNext(point, 1.0f / static_cast<float>(n));
             REQUIRE((point.x >= 0 && point.x < 1 && point.y >= 0 && point.y < 1));
             ++x[static_cast<size_t>(std::fmod(point.x + 1.7f + 0.5f / static_cast<float>(n), 1.0f) *
                                     static_cast<float>(n))];
@@ -146,7 +146,7 @@ TEST_CASE("filter points are even: strata, density and range") {
     for (const int n : {16, 64}) {
         std::vector<glm::dvec2> points;
         glm::dvec2 point(0);
-        for (int i = 0; i < n; ++i) points.push_back(point = f64::latticeNext(point, n));
+        for (int i = 0; i < n; ++i) points.push_back(point = f64::latticeNext(point, 1.0 / n));
         double worst = 0;
         for (double u = 0.05; u < 1; u += 0.05)
             for (double v = 0.05; v < 1; v += 0.05) {
@@ -163,7 +163,7 @@ TEST_CASE("filter points are even: strata, density and range") {
         for (int i = 0; i < n; ++i) {
             const glm::dvec2 next = f64::spiralNext(direction);
             CHECK(std::acos(glm::dot(direction, next)) == Approx(2.39996323).epsilon(1e-5));
-            CHECK(glm::length(f64::spiralPoint(next, i, n)) == Approx(std::sqrt((i + 0.5) / n)).epsilon(1e-5));
+            CHECK(glm::length(f64::spiralPoint(next, i, 1.0 / n)) == Approx(std::sqrt((i + 0.5) / n)).epsilon(1e-5));
             direction = next;
         }
         // After many turns the float copy is still on the circle.
