@@ -25,7 +25,8 @@ export HOME=$folder/home PENUMBRA_CONFIG_DIR=$folder/config LIBGL_ALWAYS_SOFTWAR
 export ASAN_OPTIONS=detect_leaks=0 # graphics drivers keep memory until the end
 touch "$folder/stderr"
 unset WAYLAND_DISPLAY
-Xvfb -displayfd 1 -screen 0 1280x720x24 -nolisten tcp >"$folder/display" 2>/dev/null & server=$!
+# Without -noreset the server starts anew when its last client leaves, and a program that comes just then finds none.
+Xvfb -noreset -displayfd 1 -screen 0 1280x720x24 -nolisten tcp >"$folder/display" 2>/dev/null & server=$!
 for _ in $(seq 200); do grep -q '^[0-9]' "$folder/display" && break; sleep 0.1; done
 export DISPLAY=:$(head -n 1 "$folder/display")
 xdotool getdisplaygeometry >/dev/null || { echo "left out: no virtual screen"; exit 77; }
