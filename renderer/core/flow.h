@@ -97,10 +97,10 @@ struct Draw {
     uint64_t poseVersion = 0;           // equal versions: equal vertices
     Faces faces = Faces::Both;
     bool castersOnly = false;
-    bool textured = false;   // the shader looks at base colour textures, not only at the masks of some
+    bool textured = false;      // the shader looks at base colour textures, not only at the masks of some
     bool reversedDepth = false; // nearer is greater: the far end is 0, else 1
-    bool depthClamp = false; // keep what lies before the near plane
-    int border = 0;          // texels along the edge that stay cleared
+    bool depthClamp = false;    // keep what lies before the near plane
+    int border = 0;             // texels along the edge that stay cleared
     float clear[4] = {0, 0, 0, 0};
     bool operator==(const Draw&) const = default;
 };

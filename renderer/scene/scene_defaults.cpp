@@ -123,8 +123,8 @@ Ground groundBelow(const Scene& scene, const Pose& pose) {
     return {.height = bounds.min.y, .centre = {centre.x, centre.z}, .halfSize = 3 * bounds.diagonal()};
 }
 
-// Looks for a floor: surfaces that face up in the lowest quarter of the scene and, seen from above, fill half of it. What
-// stands tall on it throws its shadow beyond, so the scene must also be broad.
+// Looks for a floor: surfaces that face up in the lowest quarter of the scene and, seen from above, fill half of it.
+// What stands tall on it throws its shadow beyond, so the scene must also be broad.
 bool wantsGround(const Scene& scene, const Pose& pose) {
     const Bounds bounds = worldBounds(scene, pose);
     if (bounds.empty()) return false;

@@ -135,5 +135,6 @@ TEST_CASE("names are suggested when they are near and not when they are not") {
     const std::string_view names[] = {"hard", "pcf", "pcss"};
     CHECK(nearestName("pcfs", names) == "pcf");
     CHECK(nearestName("harf", names) == "hard");
+    CHECK(nearestName("pfc", names) == "pcf"); // swapped
     CHECK(nearestName("zzzzzz", names).empty());
 }
