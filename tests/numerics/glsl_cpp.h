@@ -62,6 +62,7 @@ using vec4 = glm::vec<4, float>;
 #include "shaders/lib/light_space.glsl"
 #include "shaders/lib/octahedral.glsl"
 #include "shaders/lib/sampling.glsl"
+#include "shaders/lib/srgb.glsl"
 } // namespace f32
 
 #define float double
@@ -73,6 +74,7 @@ using vec4 = glm::vec<4, double>;
 #include "shaders/lib/light_space.glsl"
 #include "shaders/lib/octahedral.glsl"
 #include "shaders/lib/sampling.glsl"
+#include "shaders/lib/srgb.glsl"
 } // namespace f64
 #undef float
 
