@@ -33,6 +33,12 @@ void main()
 #endif
 
 #ifdef FRAGMENT_SHADER
+#ifdef PEELED
+uniform sampler2D nearer; // the layer before this one
+#endif
+#ifdef COLOUR_DEPTH
+layout(location = 0) out float depth;
+#endif
 #if defined(RADIAL)
 in vec3 fromLight;
 #elif defined(LINEAR_DEPTH)
@@ -50,9 +56,21 @@ void main()
 #endif
     // Of perspective maps and radial metrics the rasteriser's own depth is not what is stored.
 #if defined(RADIAL)
-    gl_FragDepth = clamp((length(fromLight) - lightView.range.x) * lightView.range.z, 0.0, 1.0);
+    float stored = clamp((length(fromLight) - lightView.range.x) * lightView.range.z, 0.0, 1.0);
 #elif defined(LINEAR_DEPTH)
-    gl_FragDepth = clamp(z, 0.0, 1.0);
+    float stored = clamp(z, 0.0, 1.0);
+#else
+    float stored = gl_FragCoord.z;
+#endif
+#ifdef PEELED
+    // Beyond rounding: the same surface must not come again.
+    if (stored <= texelFetch(nearer, ivec2(gl_FragCoord.xy), 0).x + 1e-6) discard;
+#endif
+#if defined(RADIAL) || defined(LINEAR_DEPTH)
+    gl_FragDepth = stored;
+#endif
+#ifdef COLOUR_DEPTH
+    depth = stored;
 #endif
 }
 #endif

@@ -7,6 +7,7 @@
 #include <fstream>
 #include <regex>
 #include <sstream>
+#include <tuple>
 
 namespace penumbra {
 namespace {
@@ -162,6 +163,12 @@ void ProgramLibrary::build(Entry& entry) const {
     }
     glObjectLabel(GL_PROGRAM, name, static_cast<GLsizei>(entry.shader.size()), entry.shader.data());
 
+    struct Uniform {
+        std::string name;
+        GLint location;
+        bool image;
+    };
+    std::vector<Uniform> found;
     GLint uniforms = 0;
     glGetProgramInterfaceiv(name, GL_UNIFORM, GL_ACTIVE_RESOURCES, &uniforms);
     for (GLuint i = 0; i < static_cast<GLuint>(uniforms); ++i) {
@@ -171,10 +178,16 @@ void ProgramLibrary::build(Entry& entry) const {
         if (values[2] != -1 || values[1] < 0) continue; // in a block
         char uniform[128] = {};
         glGetProgramResourceName(name, GL_UNIFORM, i, sizeof(uniform), nullptr, uniform);
-        auto& bindings = isImage(static_cast<GLenum>(values[0])) ? program.images_ : program.samplers_;
+        found.push_back({uniform, values[1], isImage(static_cast<GLenum>(values[0]))});
+    }
+    std::sort(found.begin(), found.end(), [](const Uniform& a, const Uniform& b) {
+        return std::tuple(a.name == materialSampler, a.name) < std::tuple(b.name == materialSampler, b.name);
+    });
+    for (const Uniform& uniform : found) {
+        auto& bindings = uniform.image ? program.images_ : program.samplers_;
         const GLuint unit = static_cast<GLuint>(bindings.size());
-        glProgramUniform1i(name, values[1], static_cast<GLint>(unit));
-        bindings.push_back({uniform, unit});
+        glProgramUniform1i(name, uniform.location, static_cast<GLint>(unit));
+        bindings.push_back({uniform.name, unit});
     }
     program.source_ = std::move(text.body);
     entry.program = std::move(program);

@@ -16,8 +16,11 @@ namespace penumbra {
 
 enum class ProgramKind { Compute, Raster }; // Raster: one file with VERTEX_SHADER and FRAGMENT_SHADER parts
 
-// A linked program and where its samplers and images are bound. Samplers get units 0, 1, 2 ... in the order that the
-// driver lists them, images likewise.
+// The sampler of a material's texture, which the geometry binds and not the pass.
+inline constexpr std::string_view materialSampler = "baseColourTexture";
+
+// A linked program and where its samplers and images are bound: units 0, 1, 2 ... by name, the material's texture last,
+// so that the variants of a pass agree.
 class Program {
 public:
     struct Binding {

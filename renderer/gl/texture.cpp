@@ -28,11 +28,23 @@ Texture::Texture(std::string_view label, Format format, Extent extent) : format_
     if (extent.width > limit || extent.height > limit)
         throw InputError(fmt::format("{}: {}x{} texels are more than this driver's limit of {}x{}", label, extent.width,
                                      extent.height, limit, limit));
+    if (extent.samples > 1) {
+        GLint counts[16] = {}, found = 0;
+        const GLenum internal = glFormat(format).internal;
+        glGetInternalformativ(GL_TEXTURE_2D_MULTISAMPLE, internal, GL_NUM_SAMPLE_COUNTS, 1, &found);
+        found = std::min<GLint>(found, std::size(counts));
+        glGetInternalformativ(GL_TEXTURE_2D_MULTISAMPLE, internal, GL_SAMPLES, found, counts);
+        if (std::find(counts, counts + found, extent.samples) == counts + found)
+            throw InputError(fmt::format("{}: {} samples a texel of {}; this driver offers {}", label, extent.samples,
+                                         info(format).name, fmt::join(counts, counts + found, ", ")));
+    }
     GLuint name = 0;
     glCreateTextures(target(), 1, &name);
     handle_ = Handle<destroy>(name);
     const GLenum internal = glFormat(format).internal;
-    if (extent.layers > 1)
+    if (extent.samples > 1)
+        glTextureStorage2DMultisample(name, extent.samples, internal, extent.width, extent.height, GL_TRUE);
+    else if (extent.layers > 1)
         glTextureStorage3D(name, extent.levels, internal, extent.width, extent.height, extent.layers);
     else
         glTextureStorage2D(name, extent.levels, internal, extent.width, extent.height);
@@ -46,6 +58,7 @@ void Texture::clear() {
 }
 
 std::vector<float> Texture::read(int layer, int level) const {
+    ensure(extent_.samples == 1, "an image of several samples cannot be read back");
     const int width = std::max(extent_.width >> level, 1), height = std::max(extent_.height >> level, 1);
     const GlFormat gl = glFormat(format_);
     std::vector<float> values(static_cast<size_t>(width) * height * info(format_).channels);

@@ -13,11 +13,16 @@ namespace penumbra {
 class Texture {
 public:
     Texture() = default;
-    // Throws InputError if the driver's size limit is exceeded or it has no memory for it.
+    // Throws InputError if the driver's size limit is exceeded or it does not offer that number of samples. An image of
+    // several samples has one layer and one level, and cannot be read back or cleared.
     Texture(std::string_view label, Format format, Extent extent);
 
     GLuint name() const { return handle_.get(); }
-    GLenum target() const { return extent_.layers > 1 ? GL_TEXTURE_2D_ARRAY : GL_TEXTURE_2D; }
+    GLenum target() const {
+        return extent_.samples > 1  ? GL_TEXTURE_2D_MULTISAMPLE
+               : extent_.layers > 1 ? GL_TEXTURE_2D_ARRAY
+                                    : GL_TEXTURE_2D;
+    }
     Format format() const { return format_; }
     const Extent& extent() const { return extent_; }
 

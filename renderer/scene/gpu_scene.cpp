@@ -11,8 +11,6 @@
 namespace penumbra {
 namespace {
 
-constexpr std::string_view textureSampler = "baseColourTexture";
-
 GLint glWrap(Wrap wrap) {
     switch (wrap) {
     case Wrap::Repeat: return GL_REPEAT;
@@ -175,7 +173,7 @@ void GpuScene::draw(const Draw& draw, const Programs& programs) const {
 
     const auto textureUnit = [](const Program& program) {
         for (const Program::Binding& sampler : program.samplers())
-            if (sampler.name == textureSampler) return static_cast<int>(sampler.unit);
+            if (sampler.name == materialSampler) return static_cast<int>(sampler.unit);
         return -1;
     };
     const auto programOf = [&](const Batch& batch) -> const Program& {

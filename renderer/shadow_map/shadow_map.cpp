@@ -170,24 +170,45 @@ ShadowMap drawShadowMap(Flow& flow, Scope scope, const Inputs& inputs, const Sha
     static constexpr Channel channels[] = {{"depth", "z",
                                             "linear depth from the light, (d − near) / (far − near); 1: nothing casts",
                                             Unit::DepthRange, 0, 1}};
+    static constexpr std::string_view names[mostLayers] = {"shadow-map",   "shadow-map-2", "shadow-map-3",
+                                                           "shadow-map-4", "shadow-map-5", "shadow-map-6",
+                                                           "shadow-map-7", "shadow-map-8"};
+    static constexpr std::string_view zNames[mostLayers] = {"shadow-map-z",   "shadow-map-z-2", "shadow-map-z-3",
+                                                            "shadow-map-z-4", "shadow-map-z-5", "shadow-map-z-6",
+                                                            "shadow-map-z-7", "shadow-map-z-8"};
+    const int layer = description.layer;
+    ensure(layer >= 0 && layer < mostLayers, "a shadow map layer that there is not");
+    ensure(layer == 0 || description.samples == 1, "layers are peeled from maps of one sample");
     const LightViewBlock view = lightView(inputs, description);
-    const Faces faces = description.faces;
-    const Extent extent{description.size, description.size};
+    const Extent extent{.width = description.size, .height = description.size, .samples = description.samples};
+    const std::string_view name = names[layer];
+    const bool nearestOnly = layer == 0 && description.faces == Faces::Both && seesFromOutside(inputs, view);
     Draw draw{.shader = "shadow_map.glsl",
               .geometry = inputs.geometry,
               .poseVersion = inputs.poseVersion,
-              .faces = faces == Faces::Both && seesFromOutside(inputs, view) ? Faces::Nearest : faces,
+              .faces = nearestOnly ? Faces::Nearest : description.faces,
               .castersOnly = true,
               .depthClamp = true,
-              .border = borderTexels};
+              .border = borderTexels,
+              .clear = {1, 1, 1, 1}};
     // The rasteriser's depth of an orthographic map is the stored depth already.
     if (view.sample_reference.w == 0) draw.defines.push_back({view.range.w != 0 ? "RADIAL" : "LINEAR_DEPTH"});
-    const Image depth = flow.pass(scope, {.stage = Stage::ShadowMap,
-                                          .name = "shadow-map",
-                                          .work = draw,
-                                          .writes = {{"shadow-map", Format::Depth32F, extent, channels}},
-                                          .constants = view});
-    return {depth, view};
+    PassSpec pass{.stage = Stage::ShadowMap, .name = name, .constants = view};
+    if (description.format != Format::Depth32F) {
+        draw.defines.push_back({"COLOUR_DEPTH"});
+        pass.writes.push_back({name, description.format, extent, channels});
+        pass.writes.push_back({zNames[layer], Format::Depth32F, extent, channels});
+    } else {
+        pass.writes.push_back({name, Format::Depth32F, extent, channels});
+    }
+    if (layer > 0) {
+        ShadowMapDescription nearer = description;
+        --nearer.layer;
+        draw.defines.push_back({"PEELED"});
+        pass.reads.push_back({"nearer", drawShadowMap(flow, scope, inputs, nearer).depth});
+    }
+    pass.work = draw;
+    return {flow.pass(scope, pass)[0], view};
 }
 
 ViewBlock viewBlock(const View& view) {

@@ -20,7 +20,11 @@ struct ShadowMapDescription {
     Faces faces = Faces::Both;
     LightSample sample = lightCentre;
     Metric metric = Metric::Axial;
+    Format format = Format::Depth32F; // or R32F, for depths that need a sign
+    int samples = 1;                  // a texel; the driver's counts
+    int layer = 0;                    // 0: the nearest surfaces, n: those behind the n-th; at most mostLayers − 1
 };
+inline constexpr int mostLayers = 8;
 
 // What every technique that reads a shadow map lets its user turn.
 struct ShadowMapParameters : ParameterGroup {
@@ -108,7 +112,8 @@ struct ReceiverPlane : Flag {
 // whole light, so they are the same for every sample.
 LightViewBlock lightView(const Inputs& inputs, const ShadowMapDescription& description);
 
-// Draws a map: one Depth32F image "shadow-map" of linear depth in [0, 1], 1 where nothing casts.
+// Draws a map: an image "shadow-map" ("shadow-map-2" for the second layer ...) of linear depth in [0, 1], 1 where
+// nothing casts. Layers are peeled one behind the other, each with those before it.
 struct ShadowMap {
     Image depth;
     LightViewBlock view;

@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: MIT
 // The shadow map itself, and the flow that instances of techniques share.
+#include "renderer/core/paths.h"
+#include "renderer/scene/gpu_scene.h"
 #include "renderer/shadow_map/shadow_map.h"
 #include "tests/catch.h"
 #include "tests/support/scenes.h"
@@ -180,6 +182,47 @@ TEST_CASE("a radial map stores the distance from the light's point") {
     }
     light.shape = LightShape::Directional;
     CHECK_THROWS_AS(lightView(inputs, radial), std::logic_error);
+}
+
+TEST_CASE("a map may be a float image, have samples, and show the surfaces behind the nearest") {
+    // Two sheets over a floor; the lower one is wider.
+    Session s = session(SceneBuilder()
+                            .floor(3)
+                            .quad({-1, 1, 1}, {1, 1, 1}, {1, 1, -1}, {-1, 1, -1})
+                            .quad({-0.3f, 2, 0.3f}, {0.3f, 2, 0.3f}, {0.3f, 2, -0.3f}, {-0.3f, 2, -0.3f})
+                            .build(),
+                        "hard");
+    for (const LightShape shape : {LightShape::Rectangle, LightShape::Directional}) {
+        s.light.shape = shape;
+        (void)draw(s); // poses the scene
+        const GpuScene geometry(renderer().state());
+        ProgramLibrary programs(shaderFolder());
+        FlowRunner runner(programs);
+        Bench bench;
+        const Inputs inputs{bench.view, s.light, *bench.surfaces, &geometry, 1, renderer().state().occluders(), 0, 0};
+        const auto centreOf = [&](const ShadowMapDescription& description) {
+            bench.flow.begin();
+            const ShadowMap map = drawShadowMap(bench.flow, {.owner = "demo"}, inputs, description);
+            runner.run(bench.flow, Timing::Off);
+            const float z = runner.texture(bench.flow, map.depth).read()[64 * 32 + 32];
+            return z == 1 ? 0.0f : s.light.position.y - (z / map.view.range.z + map.view.range.x);
+        };
+        CAPTURE(int(shape));
+        for (const Format format : {Format::Depth32F, Format::R32F}) {
+            CHECK(centreOf({.size = 64, .format = format}) == Approx(2).margin(1e-3));
+            CHECK(centreOf({.size = 64, .format = format, .layer = 1}) == Approx(1).margin(1e-3));
+            CHECK(centreOf({.size = 64, .format = format, .layer = 2}) == Approx(0).margin(1e-3));
+            CHECK(centreOf({.size = 64, .format = format, .layer = 3}) == 0); // nothing there
+        }
+        // Four samples are what every driver offers; three are refused with those that there are.
+        bench.flow.begin();
+        (void)drawShadowMap(bench.flow, {.owner = "demo"}, inputs, {.size = 64, .samples = 4});
+        runner.run(bench.flow, Timing::Off);
+        bench.flow.begin();
+        (void)drawShadowMap(bench.flow, {.owner = "demo"}, inputs, {.size = 64, .samples = 3});
+        CHECK_THROWS_WITH(runner.run(bench.flow, Timing::Off), contains("demo.shadow-map: 3 samples a texel"));
+    }
+    CHECK(driverMessages().empty());
 }
 
 TEST_CASE("drawing only the fronts of closed surfaces gives the same map") {
