@@ -25,7 +25,11 @@ float filtered(Lookup l, Receiver r)
 #else
 // Texel by texel, each compared once, four to a gather. Along one axis the weight of texel k of the bilinear filter is
 // (1 − f) w_k + f w_{k−1}, with f the receiver's fraction between the texel centres; n + 1 texels, an even number.
+#if SHAPE == SHAPE_BOX
+float weight(int k) { return k >= 0 && k < kernel ? entry(0) : 0.0; } // all alike: no indexed read
+#else
 float weight(int k) { return k >= 0 && k < kernel ? entry(k) : 0.0; }
+#endif
 
 float filtered(Lookup l, Receiver r)
 {
