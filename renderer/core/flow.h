@@ -3,8 +3,7 @@
 // exists only because a pass wrote it, so the order of the list is the order of the data and nothing is read early.
 // Nothing here touches OpenGL; renderer/gl/flow_runner.h carries a flow out.
 //
-//     const Image map = flow.pass(scope, {.stage = Stage::ShadowMap, .name = "shadow-map", .work = ..., .writes =
-//     {...}})[0];
+//     const Image map = flow.pass(scope, {.stage = Stage::ShadowMap, .name = "shadow-map", ...})[0];
 //
 // The list is written anew every frame from plain values, without allocating once the vectors have grown.
 #pragma once

@@ -148,9 +148,11 @@ private:
 };
 
 // Base of a struct of parameters that a shared stage declares and techniques include as a member:
-//     struct ShadowMapParameters : ParameterGroup { ShadowMapParameters(ParameterSet& s) : ParameterGroup(s, "Shadow
-//     map") {}
-//                                                   Integer size{set, {...}}; ... End end{set}; };
+//     struct KernelParameters : ParameterGroup {
+//         explicit KernelParameters(ParameterSet& s) : ParameterGroup(s, "Kernel") {}
+//         Integer size{set, {...}};
+//         End end{set};
+//     };
 class ParameterGroup {
 public:
     ParameterGroup(ParameterSet& set, std::string_view title) : set(set) { set.group_ = title; }

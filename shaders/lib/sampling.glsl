@@ -4,7 +4,7 @@
 // A set of n points is walked step by step from a start; a step costs a few instructions and no table. `share` is 1 / n.
 
 // The lattice (i / n, i / golden ratio) on the torus: one axis in n even strata, the other nearly so, and as even in the
-// plane as the Fibonacci lattice. `shift` moves the whole set (Cranley and Patterson 1976). Points in [0, 1)².
+// plane as the Fibonacci lattice. Starting elsewhere shifts the whole set (Cranley and Patterson 1976). Points in [0, 1)².
 vec2 latticeNext(vec2 point, float share)
 {
     return fract(point + vec2(share, 0.61803399f));
