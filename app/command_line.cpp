@@ -97,6 +97,9 @@ constexpr ValueOption commonOptions[] = {
      "full width and height or a disk's diameter in metres; a directional light's angular diameter in degrees",
      &Options::lightSize},
     {"--ground", "on|off", "a plane below the scene; without this, where the scene has no floor", &Options::ground},
+    {"--scene-name", "NAME", "which of the file's scenes; without this, the one it starts with", &Options::sceneName},
+    {"--variant", "NAME", "which of the file's material variants", &Options::variant},
+    {"--clip", "NAME", "which of the scene's animations; without this, the first", &Options::clip},
     {"--time", "T", "time of the animation in seconds", &Options::time},
     {"--show", "lit|shadow", "the lit picture, or the shadows alone: white is lit", &Options::show},
     {"--exposure", "STOPS", "brightness of the picture", &Options::exposure},
@@ -248,7 +251,8 @@ std::shared_ptr<const Scene> openScene(const Options& options) {
     }
     const std::vector<std::string> builtIn = builtInScenes();
     if (!options.scene && builtIn.empty()) throw InputError("there are no built-in scenes; name a .gltf or .glb file");
-    *scene = importGltf(findScene(options.scene ? *options.scene : builtIn[0]));
+    *scene = importGltf(findScene(options.scene ? *options.scene : builtIn[0]),
+                        {options.sceneName.value_or(""), options.variant.value_or("")});
     for (const std::string& note : scene->notes) fmt::print(stderr, "note: {}\n", note);
     return scene;
 }
@@ -304,6 +308,7 @@ Session makeSession(const Options& options) {
     if (options.ground) session.ground = nameOption("--ground", *options.ground, switches) == 1;
     if (options.size) session.size = parseSize(*options.size);
     adjustDisplay(session.display, options);
+    if (options.clip) session.clip = session.scene->findClip(*options.clip);
     session.time = realOption("--time", options.time, limits::seconds, session.time);
     if (options.play) session.timeStep = 1.0 / 60;
     if (options.seed) {

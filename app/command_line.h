@@ -16,7 +16,7 @@ enum class Verb { Window, Capture, List };
 // The command line as it was written. Empty options were not given.
 struct Options {
     Verb verb = Verb::Window;
-    std::optional<std::string> scene;
+    std::optional<std::string> scene, sceneName, variant, clip;
     std::optional<std::string> technique, preset, size, seed;
     std::vector<std::string> assignments; // --set
     std::optional<std::string> camera, light, lightShape, lightSize, ground;

@@ -24,7 +24,7 @@ std::string_view typeName(Parameter::Type type) {
 Flow flowOf(const Session& session) {
     SceneState state;
     state.setScene(session.scene);
-    state.update(session.time, session.ground);
+    state.update(session.clip, session.time, session.ground);
     const glm::mat4 clipFromWorld = sessionView(session, state.bounds()).clipFromWorld;
     Flow flow;
     flow.begin();

@@ -126,6 +126,22 @@ private:
     Heard heard_;
 };
 
+// A context that shares the window's objects, for another thread to fill them.
+class LoadingContext {
+public:
+    explicit LoadingContext(GLFWwindow* window) {
+        glfwWindowHint(GLFW_VISIBLE, GLFW_FALSE);
+        window_ = glfwCreateWindow(1, 1, "", nullptr, window);
+        if (!window_) throw InputError(fmt::format("there is no second OpenGL context ({})", lastGlfwError()));
+    }
+    ~LoadingContext() { glfwDestroyWindow(window_); }
+    LoadingContext(const LoadingContext&) = delete;
+    void makeCurrent(bool current) const { glfwMakeContextCurrent(current ? window_ : nullptr); }
+
+private:
+    GLFWwindow* window_ = nullptr;
+};
+
 // ImGui 1.86 looks at which keys are down once a frame: a key that went down and up within a slow frame would be lost,
 // so that its release is told a frame later.
 void Window::onKey(GLFWwindow* window, int key, int code, int action, int modifiers) {
@@ -277,9 +293,6 @@ fs::path pictureFile(const fs::path& folder, const Session& session) {
 
 Actions actionsOn(Session& session, const Renderer& renderer, const fs::path& picturesFolder) {
     Actions actions;
-    actions.openScene = [&session](const std::string& nameOrFile) {
-        session.setScene(std::make_shared<const Scene>(importGltf(findScene(nameOrFile))));
-    };
     actions.presetNames = presetNames;
     actions.loadPreset = [&session](const std::string& name) { loadPreset(findPreset(name), session.techniques); };
     actions.savePreset = [&session](const std::string& name) {
@@ -302,7 +315,9 @@ int runWindow(Session& session, const WindowOptions& options) {
     Window window(options);
     Renderer renderer;
     Gui gui(window);
-    Workspace workspace(session, renderer, actionsOn(session, renderer, options.picturesFolder));
+    const LoadingContext loadingContext(window.get());
+    SceneLoader loader([&](bool current) { loadingContext.makeCurrent(current); });
+    Workspace workspace(session, renderer, loader, actionsOn(session, renderer, options.picturesFolder));
     if (!gui.fit()) workspace.say("DejaVu Sans is not installed: Greek letters and signs show as '?'");
     glfwSetWindowTitle(window.get(), fmt::format("{} – Penumbra", session.scene->name).c_str());
 
@@ -328,7 +343,7 @@ int runWindow(Session& session, const WindowOptions& options) {
         last = now;
 
         Heard heard = window.take();
-        if (!heard.dropped.empty()) workspace.openScene(std::move(heard.dropped.front()));
+        if (!heard.dropped.empty()) workspace.openScene({std::move(heard.dropped.front())});
         gui.fit();
         gui.begin();
         workspace.draw(keysOf(window, heard.struck), seconds, window.pixelsPerUnit());

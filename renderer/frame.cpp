@@ -17,9 +17,11 @@ constexpr Channel normalChannels[] = {{"geometric-x", "n", "geometric normal, wo
                                       {"geometric-y", "n", "geometric normal, world, octahedral", Unit::None, -1, 1},
                                       {"shading-x", "n", "interpolated normal, world, octahedral", Unit::None, -1, 1},
                                       {"shading-y", "n", "interpolated normal, world, octahedral", Unit::None, -1, 1}};
-constexpr Channel colourChannels[] = {{"red", "", "square root of the linear base colour", Unit::None, 0, 1},
-                                      {"green", "", "square root of the linear base colour", Unit::None, 0, 1},
-                                      {"blue", "", "square root of the linear base colour", Unit::None, 0, 1}};
+constexpr Channel colourChannels[] = {
+    {"red", "", "square root of the linear base colour", Unit::None, 0, 1},
+    {"green", "", "square root of the linear base colour", Unit::None, 0, 1},
+    {"blue", "", "square root of the linear base colour", Unit::None, 0, 1},
+    {"own", "", "share of it that shines by itself: emissive or unlit", Unit::None, 0, 1}};
 constexpr Channel motionChannels[] = {{"x", "", "last frame's place minus this frame's", Unit::Pixels},
                                       {"y", "", "last frame's place minus this frame's", Unit::Pixels}};
 constexpr Channel zChannels[] = {
@@ -46,6 +48,14 @@ struct LightingConstants {
 struct DisplayConstants {
     vec4 exposure_show; // x = factor, y = Show
 };
+
+// Passes of the scene's own: vertices that skins and morph targets move.
+void pose(Flow& flow, const SceneState& state, const Geometry* geometry) {
+    if (!geometry || !state.posing()) return;
+    flow.pass(
+        sceneScope,
+        {.stage = Stage::Scene, .name = "pose", .work = PoseVertices{"pose.glsl", geometry, state.poseVersion()}});
+}
 
 struct Surfaces {
     GeometryBuffer buffer;
@@ -119,6 +129,7 @@ View sessionView(const Session& session, const Bounds& bounds) {
 Frame buildFrame(Flow& flow, const Session& session, const SceneState& state, const Geometry* geometry,
                  const glm::mat4& lastClipFromWorld) {
     const View view = sessionView(session, state.bounds());
+    pose(flow, state, geometry);
     const Surfaces surfaces = drawSurfaces(flow, view, state, geometry, lastClipFromWorld);
     const Inputs inputs{view,          session.light, surfaces.buffer, geometry, state.poseVersion(), state.occluders(),
                         session.frame, session.seed};

@@ -23,6 +23,7 @@ struct Occluder {
     Bounds boundsWorld;
     bool casts = true;
     bool closed = false; // a closed surface; see scene/closed_surface.h
+    bool moved = false;  // its pose differs from the last frame's
 };
 
 struct Inputs {

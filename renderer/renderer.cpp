@@ -22,6 +22,16 @@ std::string checkedDriver() {
 
 } // namespace
 
+PreparedScene::PreparedScene(std::shared_ptr<const Scene> scene) : scene_(std::move(scene)) {
+    state_.setScene(scene_);
+    state_.update(0, 0, false);
+    geometry_ = std::make_unique<GpuScene>(state_);
+    state_.restart();
+}
+PreparedScene::~PreparedScene() = default;
+PreparedScene::PreparedScene(PreparedScene&&) noexcept = default;
+PreparedScene& PreparedScene::operator=(PreparedScene&&) noexcept = default;
+
 Renderer::Renderer() : driver_(checkedDriver()) {
     for (const std::string_view name : {"llvmpipe", "softpipe", "SWR"})
         software_ = software_ || driver_.find(name) != std::string::npos;
@@ -36,26 +46,25 @@ void Renderer::reset() {
 }
 
 void Renderer::render(const Session& session, Timing timing) {
-    if (scene_ != session.scene) {
-        scene_ = session.scene;
-        state_.setScene(scene_);
-        geometry_.reset();
+    if (!drawn_ || drawn_->scene_ != session.scene) {
+        if (!next_ || next_->scene_ != session.scene) next_.emplace(session.scene);
+        drawn_ = std::move(next_);
+        next_.reset();
         reset();
     }
-    state_.update(session.time, session.ground);
-    if (geometry_)
-        geometry_->update(state_);
-    else
-        geometry_ = std::make_unique<GpuScene>(state_);
+    SceneState& state = drawn_->state_;
+    state.update(session.clip, session.time, session.ground);
+    drawn_->geometry_->update(state);
 
-    const glm::mat4 clipFromWorld = sessionView(session, state_.bounds()).clipFromWorld;
+    const glm::mat4 clipFromWorld = sessionView(session, state.bounds()).clipFromWorld;
     flow_.begin();
     try {
-        frame_ = buildFrame(flow_, session, state_, geometry_.get(), lastClipFromWorld_.value_or(clipFromWorld));
+        frame_ = buildFrame(flow_, session, state, drawn_->geometry_.get(), lastClipFromWorld_.value_or(clipFromWorld));
         flow_.refuseAbove(session.textureLimit);
         runner_.run(flow_, timing);
     } catch (...) {
         reset();
+        state.restart();
         frame_.reset();
         throw;
     }

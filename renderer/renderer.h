@@ -14,6 +14,23 @@ namespace penumbra {
 
 class GpuScene;
 
+// A scene that is ready to be drawn: its vertices and textures are on the GPU. Made in the context that will draw it,
+// or in one that shares its objects, on any thread.
+class PreparedScene {
+public:
+    explicit PreparedScene(std::shared_ptr<const Scene> scene);
+    ~PreparedScene();
+    PreparedScene(PreparedScene&&) noexcept;
+    PreparedScene& operator=(PreparedScene&&) noexcept;
+    const std::shared_ptr<const Scene>& scene() const { return scene_; }
+
+private:
+    friend class Renderer;
+    std::shared_ptr<const Scene> scene_;
+    SceneState state_;
+    std::unique_ptr<GpuScene> geometry_;
+};
+
 class Renderer {
 public:
     Renderer(); // throws InputError if the context is not OpenGL 4.5
@@ -23,12 +40,14 @@ public:
     // more textures than session.textureLimit or one that the driver cannot have. There is no frame to look at then,
     // and the next one is a first one.
     void render(const Session& session, Timing timing = Timing::Off);
+    // The next session that shows this scene finds it ready; a scene that nobody prepared is prepared by render().
+    void take(PreparedScene prepared) { next_ = std::move(prepared); }
     // Drops all history: the next frame is the first.
     void reset();
 
     const Flow& flow() const { return flow_; }
     const FlowRunner& runner() const { return runner_; }
-    const SceneState& state() const { return state_; }
+    const SceneState& state() const { return drawn_->state_; } // of the scene that render() drew last
     // Whether the last render() succeeded, so that there are images.
     bool hasFrame() const { return frame_.has_value(); }
     // Images of the last frame. `shadow` is ψ; `display` is RGBA8, sRGB encoded, row 0 below as OpenGL has it.
@@ -54,9 +73,7 @@ private:
     ProgramLibrary programs_{shaderFolder()};
     Flow flow_;
     FlowRunner runner_{programs_};
-    SceneState state_;
-    std::unique_ptr<GpuScene> geometry_;
-    std::shared_ptr<const Scene> scene_;
+    std::optional<PreparedScene> drawn_, next_;
     std::optional<Frame> frame_;
     std::optional<glm::mat4> lastClipFromWorld_;
     bool software_ = false;

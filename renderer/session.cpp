@@ -53,13 +53,20 @@ void TechniqueShelf::assign(std::string_view assignment) const {
     set.at(qualified ? name.substr(dot + 1) : name).setText(assignment.substr(equals + 1));
 }
 
-void Session::setScene(std::shared_ptr<const Scene> newScene) {
+OpenedScene::OpenedScene(std::shared_ptr<const Scene> opened) : scene(std::move(opened)) {
     Pose pose;
-    evaluatePose(*newScene, 0, pose);
-    camera = defaultCamera(*newScene, pose);
-    light = defaultLight(*newScene, pose);
-    ground = wantsGround(*newScene, pose);
-    scene = std::move(newScene);
+    evaluatePose(*scene, 0, 0, pose);
+    camera = defaultCamera(*scene, pose);
+    light = defaultLight(*scene, pose);
+    ground = wantsGround(*scene, pose);
+}
+
+void Session::setScene(OpenedScene opened) {
+    scene = std::move(opened.scene);
+    camera = opened.camera;
+    light = opened.light;
+    ground = opened.ground;
+    clip = 0;
     time = 0;
     frame = 0;
 }

@@ -52,6 +52,15 @@ private:
     size_t chosen_ = 0;
 };
 
+// A scene and what it starts with, which takes a while to find for a large one.
+struct OpenedScene {
+    std::shared_ptr<const Scene> scene;
+    Camera camera;
+    AreaLight light;
+    bool ground;
+    explicit OpenedScene(std::shared_ptr<const Scene> opened);
+};
+
 struct Session {
     std::shared_ptr<const Scene> scene;
     Camera camera;
@@ -59,7 +68,8 @@ struct Session {
     bool ground = false; // the extra plane below the scene
     TechniqueShelf techniques;
     DisplaySettings display;
-    double time = 0;     // of the scene's animation [s]
+    size_t clip = 0;     // of the scene's animations
+    double time = 0;     // of the clip [s]
     double timeStep = 0; // how far it moves from frame to frame [s]; 0: a still scene
     uint32_t frame = 0;  // frames since the last reset
     uint32_t seed = 0;
@@ -67,7 +77,8 @@ struct Session {
     uint64_t textureLimit = uint64_t{4} << 30; // bytes
 
     // Takes a scene and the camera, light and ground that suit it.
-    void setScene(std::shared_ptr<const Scene> newScene);
+    void setScene(OpenedScene opened);
+    void setScene(std::shared_ptr<const Scene> newScene) { setScene(OpenedScene(std::move(newScene))); }
 };
 
 // Gives a light another shape. Between metres and degrees its size is converted so that the target sees it as large.

@@ -16,24 +16,30 @@ out vec3 normalWorld;
 out vec2 uv;
 #endif
 flat out vec4 baseColour;
-flat out vec4 emissive_cutoff;
+flat out vec4 emissive_unlit;
+#ifdef VERTEX_COLOURS
+out vec4 vertexColour;
+#endif
 #ifdef MOTION
 out vec4 lastClip;
 out vec4 clip;
 #endif
 void main()
 {
-    positionWorld = transformed(worldFromModel, positionModel);
-    normalWorld = transformedNormal(worldFromModel, normalModel);
+    positionWorld = transformed(affine(worldFromModel), positionModel);
+    normalWorld = transformedNormal(affine(worldFromModel), normalModel);
     gl_Position = view.clipFromWorld * vec4(positionWorld, 1.0);
 #if defined(TEXTURED) || defined(MASKED)
     uv = uvModel;
 #endif
     baseColour = drawBaseColour;
-    emissive_cutoff = drawEmissiveCutoff;
+    emissive_unlit = drawEmissiveUnlit;
+#ifdef VERTEX_COLOURS
+    vertexColour = colourModel;
+#endif
 #ifdef MOTION
     clip = gl_Position;
-    lastClip = lastClipFromWorld * vec4(transformed(lastWorldFromModel, positionModel), 1.0);
+    lastClip = lastClipFromWorld * vec4(transformed(affine(lastWorldFromModel), lastPositionModel), 1.0);
 #endif
 }
 #endif
@@ -46,7 +52,10 @@ in vec2 uv;
 uniform sampler2D baseColourTexture;
 #endif
 flat in vec4 baseColour;
-flat in vec4 emissive_cutoff;
+flat in vec4 emissive_unlit;
+#ifdef VERTEX_COLOURS
+in vec4 vertexColour;
+#endif
 layout(location = 0) out float depth;
 layout(location = 1) out vec4 normal;
 #ifdef COLOUR
@@ -59,13 +68,20 @@ layout(location = MOTION) out vec2 motion;
 #endif
 void main()
 {
-    vec4 base = baseColour;
+    vec3 base = baseColour.rgb;
+#ifdef VERTEX_COLOURS
+    base *= vertexColour.rgb;
+#endif
 #if defined(TEXTURED) || defined(MASKED)
-    base *= texture(baseColourTexture, uv);
+    base *= texture(baseColourTexture, uv).rgb;
 #endif
 #ifdef MASKED
     // Coverage from the finest level: coarser ones average it away and thin out what is far.
-    if (textureLod(baseColourTexture, uv, 0.0).a * baseColour.a < emissive_cutoff.w) discard;
+    float alpha = textureLod(baseColourTexture, uv, 0.0).a;
+#ifdef VERTEX_COLOURS
+    alpha *= vertexColour.a;
+#endif
+    if (alpha < baseColour.w) discard;
 #endif
     // Directions only: the octahedron needs no unit length.
     vec3 towardsEye = view.eyeWorld.xyz - positionWorld;
@@ -77,7 +93,10 @@ void main()
     normal = vec4(octahedralFromDirection(geometric), octahedralFromDirection(shading));
     depth = 1.0 / gl_FragCoord.w; // clip w is the eye depth
 #ifdef COLOUR
-    colour = vec4(sqrt(min(base.rgb + emissive_cutoff.xyz, 1.0)), 1.0); // in 8 bits as even to the eye as sRGB
+    vec3 shown = min(base + emissive_unlit.xyz, 1.0);
+    vec3 glow = max(emissive_unlit.xyz, emissive_unlit.w * shown);
+    float own = max(glow.r, max(glow.g, glow.b)) / max(max(shown.r, max(shown.g, shown.b)), 1e-6);
+    colour = vec4(sqrt(shown), own); // in 8 bits as even to the eye as sRGB
 #endif
 #ifdef MOTION
     motion = (lastClip.xy / lastClip.w - clip.xy / clip.w) * 0.5 * view.size.xy;

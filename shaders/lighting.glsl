@@ -39,8 +39,8 @@ void main()
     float psi = texelFetch(shadow, pixel, 0).x;
     // Ambient light is a little stronger from above, so that what lies in full shadow keeps its shape.
     float ambient = colour_ambient.w * (0.75 + 0.25 * dot(n, lightFromWorld[1].xyz));
-    vec3 root = texelFetch(colour, pixel, 0).rgb;
-    vec3 base = root * root;
-    vec3 reflected = base * (ambient + colour_ambient.rgb * (irradiance * (1.0 - psi)));
-    imageStore(lit, pixel, vec4(d > 0.0 ? reflected : background, 1.0));
+    vec4 root_own = texelFetch(colour, pixel, 0);
+    vec3 base = root_own.rgb * root_own.rgb;
+    vec3 light = ambient + colour_ambient.rgb * (irradiance * (1.0 - psi));
+    imageStore(lit, pixel, vec4(d > 0.0 ? base * mix(light, vec3(1.0), root_own.a) : background, 1.0));
 }

@@ -13,11 +13,14 @@ out float z; // linear in the position, so interpolation keeps it exact
 #endif
 #ifdef MASKED
 out vec2 uv;
-flat out vec2 alpha_cutoff;
+flat out float leastAlpha;
+#ifdef VERTEX_COLOURS
+out float vertexAlpha;
+#endif
 #endif
 void main()
 {
-    vec4 positionWorld = vec4(transformed(worldFromModel, positionModel), 1.0);
+    vec4 positionWorld = vec4(transformed(affine(worldFromModel), positionModel), 1.0);
 #if defined(RADIAL)
     fromLight = (lightView.lightFromWorld * positionWorld).xyz - vec3(lightView.sample_reference.xy, 0.0);
 #elif defined(LINEAR_DEPTH)
@@ -27,7 +30,10 @@ void main()
     gl_Position = lightView.clipFromWorld * positionWorld;
 #ifdef MASKED
     uv = uvModel;
-    alpha_cutoff = vec2(drawBaseColour.a, drawEmissiveCutoff.w);
+    leastAlpha = drawBaseColour.w;
+#ifdef VERTEX_COLOURS
+    vertexAlpha = colourModel.w;
+#endif
 #endif
 }
 #endif
@@ -46,13 +52,20 @@ in float z;
 #endif
 #ifdef MASKED
 in vec2 uv;
-flat in vec2 alpha_cutoff;
+flat in float leastAlpha;
+#ifdef VERTEX_COLOURS
+in float vertexAlpha;
+#endif
 uniform sampler2D baseColourTexture;
 #endif
 void main()
 {
 #ifdef MASKED
-    if (textureLod(baseColourTexture, uv, 0.0).a * alpha_cutoff.x < alpha_cutoff.y) discard;
+    float alpha = textureLod(baseColourTexture, uv, 0.0).a;
+#ifdef VERTEX_COLOURS
+    alpha *= vertexAlpha;
+#endif
+    if (alpha < leastAlpha) discard;
 #endif
     // Of perspective maps and radial metrics the rasteriser's own depth is not what is stored.
 #if defined(RADIAL)

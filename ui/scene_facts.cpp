@@ -6,11 +6,10 @@
 namespace penumbra {
 
 SceneFacts::SceneFacts(std::shared_ptr<const Scene> taken) : scene(std::move(taken)) {
-    evaluatePose(*scene, 0, pose);
+    evaluatePose(*scene, 0, 0, pose);
     boundsWorld = worldBounds(*scene, pose);
     if (const float diagonal = boundsWorld.diagonal(); diagonal > 0) size = diagonal;
     triangles = scene->triangleCount();
-    if (!scene->animations.empty()) duration = scene->animations[0].duration;
 }
 
 } // namespace penumbra

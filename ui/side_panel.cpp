@@ -97,7 +97,7 @@ void SidePanel::scene(Session& session, const SceneFacts& facts, Requests& reque
     row("Scene");
     if (ImGui::BeginCombo("##built-in", scene.name.c_str())) {
         for (const std::string& name : builtIns_)
-            if (ImGui::Selectable(name.c_str(), name == scene.name)) requests.openScene = name;
+            if (ImGui::Selectable(name.c_str(), name == scene.name)) requests.openScene = SceneRequest{name};
         ImGui::EndCombo();
     }
     tooltip("The scenes that come with the program");
@@ -106,12 +106,13 @@ void SidePanel::scene(Session& session, const SceneFacts& facts, Requests& reque
     ImGui::SetNextItemWidth(
         std::max(ImGui::GetContentRegionAvail().x - open - ImGui::GetStyle().ItemInnerSpacing.x, 1.0f));
     if (path_.edit("##path", ".gltf or .glb", ImGuiInputTextFlags_EnterReturnsTrue) && !path_.view().empty())
-        requests.openScene = std::string(path_.view());
+        requests.openScene = SceneRequest{std::string(path_.view())};
     tooltip(ShortText("{}\n\nType the path of a .gltf or .glb file and press Enter, or drop a file on the window",
                       path_.view())
                 .view());
     ImGui::SameLine(0, ImGui::GetStyle().ItemInnerSpacing.x);
     requests.chooseFile = ImGui::Button("Open…");
+    choices(scene, requests);
     row("Triangles");
     text(ShortText("{}", facts.triangles).view());
     row("Size");
@@ -126,14 +127,65 @@ void SidePanel::scene(Session& session, const SceneFacts& facts, Requests& reque
     }
 }
 
+// What the file itself offers to choose from.
+void SidePanel::choices(const Scene& scene, Requests& requests) {
+    const auto reopen = [&](ImportChoice choice) {
+        requests.openScene = SceneRequest{scene.file.string(), std::move(choice), true};
+    };
+    const auto nameOf = [](const std::vector<std::string>& names, int index) {
+        return index < 0 || static_cast<size_t>(index) >= names.size() ? std::string()
+                                                                       : names[static_cast<size_t>(index)];
+    };
+    const ImportChoice chosen{nameOf(scene.sceneNames, scene.chosenScene),
+                              nameOf(scene.variantNames, scene.chosenVariant)};
+    if (scene.sceneNames.size() > 1) {
+        row("Part");
+        if (ImGui::BeginCombo("##part", chosen.scene.c_str())) {
+            for (const std::string& name : scene.sceneNames)
+                if (ImGui::Selectable(name.c_str(), name == chosen.scene)) reopen({name, chosen.variant});
+            ImGui::EndCombo();
+        }
+        tooltip("The scenes that the file holds");
+    }
+    if (!scene.variantNames.empty()) {
+        constexpr const char* none = "as modelled";
+        row("Variant");
+        if (ImGui::BeginCombo("##variant", chosen.variant.empty() ? none : chosen.variant.c_str())) {
+            if (ImGui::Selectable(none, chosen.variant.empty())) reopen({chosen.scene, ""});
+            for (const std::string& name : scene.variantNames)
+                if (ImGui::Selectable(name.c_str(), name == chosen.variant)) reopen({chosen.scene, name});
+            ImGui::EndCombo();
+        }
+        tooltip("The variants of its materials that the file holds");
+    }
+}
+
 void timeControls(Session& session, const SceneFacts& facts, Playback& playback) {
-    if (facts.duration <= 0) return;
+    const std::vector<Animation>& clips = facts.scene->animations;
+    if (clips.empty()) return;
+    if (clips.size() > 1) {
+        row("Clip");
+        if (ImGui::BeginCombo("##clip", clips[session.clip].name.c_str(), ImGuiComboFlags_HeightLarge)) {
+            for (size_t i = 0; i < clips.size(); ++i) {
+                ImGui::PushID(static_cast<int>(i));
+                if (ImGui::Selectable(clips[i].name.c_str(), i == session.clip)) {
+                    session.clip = i;
+                    session.time = 0;
+                }
+                ImGui::PopID();
+            }
+            ImGui::EndCombo();
+        }
+        tooltip("The animations that the file holds");
+    }
+    const double first = 0, duration = facts.duration(session.clip);
+    if (duration <= 0) return;
     row("Time");
-    double now = std::fmod(session.time, facts.duration);
-    const double first = 0;
-    if (ImGui::SliderScalar("##time", ImGuiDataType_Double, &now, &first, &facts.duration, "%.3f s",
+    double now = std::fmod(session.time, duration);
+    if (ImGui::SliderScalar("##time", ImGuiDataType_Double, &now, &first, &duration, "%.3f s",
                             ImGuiSliderFlags_AlwaysClamp))
         session.time = now;
+    tooltip("Where the animation is. Drag to scrub.");
     row("");
     if (ImGui::Button(playback.playing ? "Pause" : "Play")) playback.playing = !playback.playing;
     tooltip("Space");
@@ -143,6 +195,11 @@ void timeControls(Session& session, const SceneFacts& facts, Playback& playback)
         playback.stepOnce = true;
     }
     tooltip("One frame of 1/60 s");
+    row("Speed");
+    ImGui::SliderFloat("##speed", &playback.speed, 0.05f, 4, "%.2f ×",
+                       ImGuiSliderFlags_AlwaysClamp | ImGuiSliderFlags_Logarithmic);
+    tooltip("How fast the animation plays. Double click: as fast as it was made.");
+    if (ImGui::IsItemHovered() && ImGui::IsMouseDoubleClicked(ImGuiMouseButton_Left)) playback.speed = 1;
 }
 
 void SidePanel::technique(Session& session, Requests& requests) {

@@ -13,11 +13,20 @@ namespace penumbra {
 struct Playback {
     bool playing = false;
     bool stepOnce = false; // one frame forward, then still
+    float speed = 1;       // seconds of the clip a second
+};
+
+// A scene to open. With `keepView` the camera, the light and the ground stay as they are.
+struct SceneRequest {
+    std::string nameOrFile;
+    ImportChoice choice = {};
+    bool keepView = false;
 };
 
 // What a hand asked for that needs more than the session: the workspace carries it out.
 struct Requests {
-    std::optional<std::string> openScene, loadPreset, savePreset;
+    std::optional<SceneRequest> openScene;
+    std::optional<std::string> loadPreset, savePreset;
     bool chooseFile = false;
     bool listPresets = false;
     bool restart = false; // forget all history
@@ -33,6 +42,7 @@ public:
 
 private:
     void scene(Session& session, const SceneFacts& facts, Requests& requests);
+    void choices(const Scene& scene, Requests& requests);
     void technique(Session& session, Requests& requests);
     void presets(const Session& session, Requests& requests);
     void light(Session& session, const SceneFacts& facts);

@@ -94,6 +94,7 @@ void Viewport::fingerprint(const Session& session, const Renderer& renderer) {
     append(now_, session.camera);
     append(now_, session.light);
     append(now_, session.display);
+    append(now_, session.clip);
     append(now_, session.time);
     append(now_, session.size);
     append(now_, session.seed);

@@ -36,9 +36,10 @@ bool beginDialog(const char* title) {
 
 } // namespace
 
-Workspace::Workspace(Session& session, Renderer& renderer, Actions actions)
+Workspace::Workspace(Session& session, Renderer& renderer, SceneLoader& loader, Actions actions)
     : session_(session)
     , renderer_(renderer)
+    , loader_(loader)
     , actions_(std::move(actions))
     , facts_(session.scene) {
     playback_.playing = session.timeStep != 0;
@@ -55,9 +56,11 @@ template <class Action> bool Workspace::attempt(Action&& action) {
     }
 }
 
-void Workspace::openScene(std::string nameOrFile) {
-    pendingScene_ = std::move(nameOrFile);
-    pendingShown_ = false;
+void Workspace::openScene(SceneRequest request) {
+    attempt([&] {
+        loader_.start(findScene(request.nameOrFile), request.choice);
+        loading_ = std::move(request);
+    });
 }
 
 void Workspace::say(std::string message) {
@@ -66,7 +69,7 @@ void Workspace::say(std::string message) {
 }
 
 bool Workspace::moving() const {
-    return viewport_.renderedNow() || pendingScene_ || playback_.playing || messageSeconds_ > 0 ||
+    return viewport_.renderedNow() || loader_.progress() || playback_.playing || messageSeconds_ > 0 ||
            drawer_ == Drawer::Timings;
 }
 
@@ -75,7 +78,7 @@ Timing Workspace::timing() const {
 }
 
 void Workspace::draw(const Keys& keys, float seconds, float pixelsPerUnit) {
-    openPending();
+    takeLoaded();
     strokes(keys);
     advanceTime(std::min(seconds, longestFrame));
 
@@ -104,7 +107,10 @@ void Workspace::draw(const Keys& keys, float seconds, float pixelsPerUnit) {
                    ImGuiWindowFlags_NoScrollbar | ImGuiWindowFlags_NoScrollWithMouse)) {
         viewport_.draw(session_, renderer_, facts_, keys, timing(), drawer_ == Drawer::Timings, side_.lightShown(),
                        std::min(seconds, longestFrame), pixelsPerUnit);
-        message({0, barHeight + viewHeight}, left);
+        if (loader_.progress())
+            loadingBar({0, barHeight + viewHeight}, left, keys.escape);
+        else
+            message({0, barHeight + viewHeight}, left);
     }
     ImGui::End();
     ImGui::PopStyleVar();
@@ -141,9 +147,9 @@ void Workspace::strokes(const Keys& keys) {
 
 void Workspace::advanceTime(float seconds) {
     session_.timeStep = 0;
-    if (facts_.duration <= 0) playback_ = {};
+    if (facts_.duration(session_.clip) <= 0) playback_.playing = playback_.stepOnce = false;
     if (playback_.playing)
-        session_.timeStep = seconds;
+        session_.timeStep = seconds * playback_.speed;
     else if (playback_.stepOnce)
         session_.timeStep = step;
     playback_.stepOnce = false;
@@ -224,24 +230,47 @@ void Workspace::carryOut(Requests& requests) {
         say(fmt::format("Preset {} saved", *requests.savePreset));
 }
 
-// Loading blocks: a frame that says so comes first.
-void Workspace::openPending() {
-    if (!pendingScene_) return;
-    if (!pendingShown_) {
-        say(fmt::format("Loading {} …", *pendingScene_));
-        pendingShown_ = true;
-        return;
+void Workspace::takeLoaded() {
+    std::optional<LoadedScene> loaded;
+    if (!attempt([&] { loaded = loader_.poll(); }) || !loaded) return;
+    if (loading_.keepView) {
+        loaded->opened.camera = session_.camera;
+        loaded->opened.light = session_.light;
+        loaded->opened.ground = session_.ground;
     }
-    const std::string wanted = std::move(*pendingScene_);
-    pendingScene_.reset();
-    message_.clear();
-    if (!attempt([&] { actions_.openScene(wanted); })) return;
+    session_.setScene(std::move(loaded->opened));
+    renderer_.take(std::move(loaded->prepared));
     facts_ = SceneFacts(session_.scene);
     playback_ = {};
     viewport_.invalidate();
     viewport_.restart();
     timings_.forget();
     say(fmt::format("{}: {} triangles", session_.scene->name, facts_.triangles));
+}
+
+void Workspace::loadingBar(ImVec2 corner, float width, bool cancel) {
+    const Progress& progress = *loader_.progress();
+    const float em = ImGui::GetFontSize(), padding = 0.6f * em;
+    const ImVec2 size{std::min(30 * em, std::max(width - 2 * padding, 1.0f)), 3.6f * em + 2 * padding};
+    ImGui::SetCursorScreenPos({corner.x + padding, corner.y - size.y - padding});
+    ImGui::PushStyleVar(ImGuiStyleVar_WindowPadding, {padding, padding});
+    ImGui::PushStyleColor(ImGuiCol_ChildBg, ImGui::GetStyleColorVec4(ImGuiCol_PopupBg));
+    if (ImGui::BeginChild("loading", size, true, ImGuiWindowFlags_NoScrollbar)) {
+        const std::string name = std::filesystem::path(loading_.nameOrFile).filename().string();
+        text(ShortText("Loading {}: {}", name, progress.doing()).view());
+        const float button = ImGui::CalcTextSize("Cancel").x + 2 * ImGui::GetStyle().FramePadding.x;
+        ImGui::ProgressBar(static_cast<float>(progress.share()), {-button - ImGui::GetStyle().ItemSpacing.x, 0});
+        ImGui::SameLine();
+        cancel = ImGui::Button("Cancel") || cancel;
+        tooltip("Keep the scene that is shown (Esc)");
+    }
+    ImGui::EndChild();
+    ImGui::PopStyleColor();
+    ImGui::PopStyleVar();
+    if (cancel) {
+        loader_.cancel();
+        say("Loading cancelled");
+    }
 }
 
 void Workspace::takePicture() {
@@ -268,7 +297,7 @@ void Workspace::message(ImVec2 corner, float width) {
 }
 
 void Workspace::dialogs(const Keys& keys) {
-    if (const auto file = chooser_.draw(keys.escape)) openScene(file->string());
+    if (const auto file = chooser_.draw(keys.escape)) openScene({file->string()});
     helpDialog(keys.escape && !openHelp_);
     errorDialog(keys.escape && !openError_);
 }

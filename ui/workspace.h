@@ -8,6 +8,8 @@
 #include "ui/timings_panel.h"
 #include "ui/viewport.h"
 
+#include "renderer/scene_loader.h"
+
 #include <filesystem>
 #include <functional>
 #include <optional>
@@ -16,21 +18,21 @@ namespace penumbra {
 
 // What the panels ask of the program around them. All may throw InputError and have changed nothing then.
 struct Actions {
-    std::function<void(const std::string& nameOrFile)> openScene; // calls session.setScene
-    std::function<std::vector<std::string>()> presetNames;        // "technique/name"
+    std::function<std::vector<std::string>()> presetNames; // "technique/name"
     std::function<void(const std::string&name)> loadPreset, savePreset;
     std::function<std::filesystem::path()> savePicture; // of the last frame; where it is
 };
 
 class Workspace {
 public:
-    Workspace(Session& session, Renderer& renderer, Actions actions);
+    Workspace(Session& session, Renderer& renderer, SceneLoader& loader, Actions actions);
 
     // Builds one ImGui frame and renders the view. `seconds` since the last one; `pixelsPerUnit`: the framebuffer's
     // scale.
     void draw(const Keys& keys, float seconds, float pixelsPerUnit);
 
-    void openScene(std::string nameOrFile);
+    // Loads it beside what is shown; a bad file shows a message and changes nothing.
+    void openScene(SceneRequest request);
     void say(std::string message); // a line that fades
     // Whether the next frame brings something new without any input.
     bool moving() const;
@@ -45,7 +47,8 @@ private:
     void drawer(float pixelsPerUnit);
     void splitter(ImVec2 corner, float width, float height, float highest);
     void carryOut(Requests& requests);
-    void openPending();
+    void takeLoaded();
+    void loadingBar(ImVec2 corner, float width, bool cancel);
     void takePicture();
     void dialogs(const Keys& keys);
     void helpDialog(bool close);
@@ -59,6 +62,7 @@ private:
 
     Session& session_;
     Renderer& renderer_;
+    SceneLoader& loader_;
     Actions actions_;
     SceneFacts facts_;
     Playback playback_;
@@ -73,8 +77,7 @@ private:
     const Card* timed_ = nullptr;       // whose times the timings panel has gathered, and how
     Timing timedHow_ = Timing::Off;
 
-    std::optional<std::string> pendingScene_;
-    bool pendingShown_ = false; // one frame has said that it is loading
+    SceneRequest loading_; // what the loader is at
     std::string error_;
     bool openError_ = false, openHelp_ = false;
     std::string message_;

@@ -59,7 +59,7 @@ int Flow::intern(Scope scope, std::string_view name) {
 }
 
 Flow::Outputs Flow::pass(Scope scope, const PassSpec& spec) {
-    ensure(!spec.writes.empty(), "a pass writes nothing");
+    ensure(!spec.writes.empty() || std::holds_alternative<PoseVertices>(spec.work), "a pass writes nothing");
     for (const Read& read : spec.reads) {
         if (const Image* image = std::get_if<Image>(&read.image)) {
             ensure(image->index_ >= 0 && image->index_ < static_cast<int>(images_.size()), "a read of no image");
@@ -82,7 +82,7 @@ Flow::Outputs Flow::pass(Scope scope, const PassSpec& spec) {
         return true;
     };
     for (const PassNode& pass : passes_) {
-        const int round = node(pass.writes[0]).repeat;
+        const int round = pass.writes.empty() ? 0 : node(pass.writes[0]).repeat;
         const bool sameParameters = pass.parameters && spec.parameters ? *pass.parameters == *spec.parameters
                                                                        : pass.parameters == spec.parameters;
         if ((round == 0 || round == repeat_) && pass.work == spec.work && pass.reads == spec.reads &&

@@ -104,6 +104,15 @@ struct Draw {
     bool operator==(const Draw&) const = default;
 };
 
+// Works out the vertices that skins and morph targets move, ahead of the draws of that pose version. Writes no image.
+struct PoseVertices {
+    std::string_view shader;
+    const Geometry* geometry = nullptr;
+    uint64_t poseVersion = 0;
+    Defines defines = {};
+    bool operator==(const PoseVertices&) const = default;
+};
+
 // The bytes of the std140 block `Constants` (binding 0) of a pass.
 class Constants {
 public:
@@ -124,7 +133,7 @@ private:
     size_t size_ = 0;
 };
 
-using Work = std::variant<Compute, Draw>;
+using Work = std::variant<Compute, Draw, PoseVertices>;
 
 struct PassSpec {
     Stage stage = Stage::Resolve;

@@ -74,10 +74,11 @@ const Texture& FlowRunner::texture(const Flow& flow, PastImage image) const {
 }
 
 const Program& FlowRunner::program(const Flow::PassNode& pass, const char* variant) {
-    const ProgramKind kind = std::holds_alternative<Draw>(pass.work) ? ProgramKind::Raster : ProgramKind::Compute;
-    if (!variant) return programs_.get(kind, shaderOf(pass.work), definesOf(pass.work), pass.parameters);
+    const Draw* draw = std::get_if<Draw>(&pass.work);
+    const ProgramKind kind = draw ? ProgramKind::Raster : ProgramKind::Compute;
     Defines defines = definesOf(pass.work);
-    defines.push_back({variant});
+    if (variant) defines.push_back({variant});
+    if (draw && draw->geometry && draw->geometry->hasColours()) defines.push_back({"VERTEX_COLOURS"});
     return programs_.get(kind, shaderOf(pass.work), defines, pass.parameters);
 }
 
@@ -197,6 +198,8 @@ void FlowRunner::run(const Flow& flow, Timing timing) {
         const DebugGroup group(flow.label(pass.label));
         if (const Draw* draw = std::get_if<Draw>(&pass.work))
             runDraw(flow, pass, *draw);
+        else if (const PoseVertices* pose = std::get_if<PoseVertices>(&pass.work))
+            pose->geometry->pose(program(pass));
         else
             runCompute(flow, pass);
         timer_.endPass(pass.stage, pass.label);

@@ -18,6 +18,10 @@ public:
         const Program& masked;
     };
     virtual ~Geometry() = default;
+    // Whether vertices have colours of their own: VERTEX_COLOURS is then defined in every variant.
+    virtual bool hasColours() const { return false; }
+    // Works out the vertices that skins and morph targets move, by a compute program.
+    virtual void pose(const Program&) const {}
     virtual void draw(const Draw& draw, const Programs& programs) const = 0;
 };
 

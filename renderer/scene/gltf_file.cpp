@@ -4,7 +4,9 @@
 #include "renderer/core/error.h"
 
 #include <fmt/format.h>
+#include <meshoptimizer.h>
 #include <stb_image.h>
+#include <webp/decode.h>
 
 #include <algorithm>
 #include <array>
@@ -22,6 +24,7 @@ using json = nlohmann::json;
 namespace {
 
 constexpr int largestImage = 16384;             // texels along an edge
+constexpr size_t mostTexelsPerByte = 8192;      // no more fit into a byte of PNG (1 bit each, deflated 1032 times)
 constexpr size_t deepestNesting = 200;          // of JSON; readers recurse on it
 constexpr size_t largestFile = size_t{1} << 32; // bytes
 constexpr uint32_t glbMagic = 0x46546C67, jsonChunk = 0x4E4F534A, binChunk = 0x004E4942;
@@ -32,14 +35,12 @@ std::vector<uint8_t> readFile(const std::filesystem::path& file, const std::stri
         throw InputError(place + (std::filesystem::exists(file, error) ? ": not a file" : ": no such file"));
     std::ifstream stream(file, std::ios::binary);
     if (!stream) throw InputError(place + ": cannot be opened");
-    std::vector<uint8_t> bytes;
-    // Grows with what is read, never by what the file system claims.
-    std::array<char, 1 << 16> block;
-    while (stream.read(block.data(), block.size()) || stream.gcount() > 0) {
-        bytes.insert(bytes.end(), block.data(), block.data() + stream.gcount());
-        if (bytes.size() > largestFile) throw InputError(place + ": has more than 4 GiB");
-    }
-    if (stream.bad()) throw InputError(place + ": cannot be read");
+    const std::uintmax_t size = std::filesystem::file_size(file, error);
+    if (error) throw InputError(place + ": cannot be read");
+    if (size > largestFile) throw InputError(place + ": has more than 4 GiB");
+    std::vector<uint8_t> bytes(size);
+    stream.read(reinterpret_cast<char*>(bytes.data()), std::streamsize(size));
+    if (stream.bad() || std::uintmax_t(stream.gcount()) != size) throw InputError(place + ": cannot be read");
     return bytes;
 }
 
@@ -132,21 +133,37 @@ std::string oneLine(std::string_view text) {
     return line;
 }
 
-GltfFile::GltfFile(const std::filesystem::path& file, std::span<const std::string_view> knownExtensions) : file_(file) {
-    const std::vector<uint8_t> bytes = readFile(file, oneLine(file.string()));
-    if (bytes.empty()) refuse("file", "is empty; expected glTF 2.0");
-    if (bytes.size() >= 4 && littleEndian32(bytes, 0) == glbMagic)
-        readBinary(bytes);
+const json* findExtension(const json& object, const char* name) {
+    const auto extensions = object.find("extensions");
+    if (extensions == object.end() || !extensions->is_object()) return nullptr;
+    const auto found = extensions->find(name);
+    return found != extensions->end() && found->is_object() ? &*found : nullptr;
+}
+
+GltfFile::GltfFile(const std::filesystem::path& file, std::span<const std::string_view> knownExtensions)
+    : GltfFile(file, readFile(file, oneLine(file.string())), knownExtensions) {}
+
+GltfFile::GltfFile(const std::filesystem::path& file, std::vector<uint8_t> bytes,
+                   std::span<const std::string_view> knownExtensions)
+    : file_(file)
+    , fileBytes_(std::move(bytes)) {
+    if (fileBytes_.empty()) refuse("file", "is empty; expected glTF 2.0");
+    if (fileBytes_.size() >= 4 && littleEndian32(fileBytes_, 0) == glbMagic)
+        readBinary();
     else if (file.extension() == ".glb")
         refuse("header", "expected a binary glTF file, which starts with 'glTF'");
     else
-        parse({reinterpret_cast<const char*>(bytes.data()), bytes.size()});
+        parse({reinterpret_cast<const char*>(fileBytes_.data()), fileBytes_.size()});
+    if (!hasBinaryChunk_) fileBytes_ = {};
     checkRoot(knownExtensions);
-    buffers_.resize(json_.contains("buffers") ? json_["buffers"].size() : 0);
+    const auto count = [&](const char* name) { return json_.contains(name) ? json_[name].size() : 0; };
+    buffers_.resize(count("buffers"));
+    decodedViews_.resize(count("bufferViews"));
 }
 
 // glTF 2.0 specification, 4.4: a header of three words (magic, version, length), then chunks of (length, type, data).
-void GltfFile::readBinary(std::span<const uint8_t> bytes) {
+void GltfFile::readBinary() {
+    const std::span<const uint8_t> bytes = fileBytes_;
     if (bytes.size() < 12) refuse("header", "ends early; expected 12 bytes");
     if (const uint32_t version = littleEndian32(bytes, 4); version != 2)
         refuse("header", fmt::format("has version {}; expected 2", version));
@@ -168,7 +185,7 @@ void GltfFile::readBinary(std::span<const uint8_t> bytes) {
             if (type != jsonChunk) refuse(place, "expected the JSON chunk first");
             parse({reinterpret_cast<const char*>(data.data()), data.size()});
         } else if (type == binChunk && chunk == 1) {
-            binaryChunk_.assign(data.begin(), data.end());
+            binaryChunk_ = data;
             hasBinaryChunk_ = true;
         }
         offset += size;
@@ -247,30 +264,30 @@ size_t GltfFile::unsignedMember(const json& object, const char* name, size_t oth
 
 std::span<const uint8_t> GltfFile::buffer(size_t index, const std::string& user) {
     const json& description = element("buffers", index, user);
-    Buffer& buffer = buffers_[index];
+    Bytes& buffer = buffers_[index];
     if (buffer.loaded) return buffer.bytes;
 
     const std::string place = fmt::format("buffer {}", index);
     const auto uri = description.find("uri");
     if (uri != description.end()) {
         if (!uri->is_string()) refuse(place, "has a uri that is not text");
-        buffer.bytes = resolve(uri->get<std::string>(), place);
+        buffer.owned = resolve(uri->get_ref<const std::string&>(), place);
+        buffer.bytes = buffer.owned;
     } else if (index == 0 && hasBinaryChunk_) {
-        buffer.bytes = std::move(binaryChunk_);
+        buffer.bytes = binaryChunk_;
     } else {
         refuse(place, "has neither a uri nor a binary chunk");
     }
     const size_t stated = unsignedMember(description, "byteLength", 0, place);
     if (stated == 0 || stated > buffer.bytes.size())
         refuse(place, fmt::format("byteLength is {} but {} bytes are there", stated, buffer.bytes.size()));
-    buffer.bytes.resize(stated);
+    buffer.bytes = buffer.bytes.first(stated);
     buffer.loaded = true;
     return buffer.bytes;
 }
 
-std::span<const uint8_t> GltfFile::bufferView(size_t index, const std::string& user) {
-    const json& description = element("bufferViews", index, user);
-    const std::string place = fmt::format("bufferView {}", index);
+// The bytes that an object with "buffer", "byteOffset" and "byteLength" means.
+std::span<const uint8_t> GltfFile::bytesOfView(const json& description, const std::string& place) {
     const size_t none = std::numeric_limits<size_t>::max();
     const std::span<const uint8_t> bytes = buffer(unsignedMember(description, "buffer", none, place), place);
     const size_t offset = unsignedMember(description, "byteOffset", 0, place);
@@ -281,14 +298,108 @@ std::span<const uint8_t> GltfFile::bufferView(size_t index, const std::string& u
     return bytes.subspan(offset, length);
 }
 
-TextureImage GltfFile::image(size_t index) {
+std::span<const uint8_t> GltfFile::bufferView(size_t index, const std::string& user) {
+    const json& description = element("bufferViews", index, user);
+    const std::string place = fmt::format("bufferView {}", index);
+    const json* compressed = findExtension(description, "EXT_meshopt_compression");
+    if (!compressed) return bytesOfView(description, place);
+    Bytes& decoded = decodedViews_[index];
+    if (!decoded.loaded) {
+        decoded.owned = decodeMeshopt(*compressed, unsignedMember(description, "byteLength", 0, place), place);
+        decoded.bytes = decoded.owned;
+        decoded.loaded = true;
+    }
+    return decoded.bytes;
+}
+
+// EXT_meshopt_compression. What comes out is claimed by the file; the three codecs cannot shrink it further than to a
+// 64th, a byte a triangle and a byte an index, so that no more is allocated than its bytes can hold.
+std::vector<uint8_t> GltfFile::decodeMeshopt(const json& compressed, size_t byteLength, const std::string& place) {
+    const std::span<const uint8_t> bytes = bytesOfView(compressed, place);
+    const size_t count = unsignedMember(compressed, "count", 0, place);
+    const size_t stride = unsignedMember(compressed, "byteStride", 0, place);
+    const auto text = [&](const char* name) {
+        const json value = compressed.value(name, json("NONE"));
+        if (!value.is_string()) refuse(place, fmt::format("EXT_meshopt_compression has a {} that is not text", name));
+        return value.get<std::string>();
+    };
+    const std::string mode = text("mode"), filter = text("filter");
+    const bool attributes = mode == "ATTRIBUTES", triangles = mode == "TRIANGLES";
+    if (!attributes && !triangles && mode != "INDICES")
+        refuse(place, fmt::format("mode is '{}'; expected ATTRIBUTES, TRIANGLES or INDICES", mode));
+    const bool strideFits = attributes ? stride % 4 == 0 && stride > 0 && stride <= 256 : stride == 2 || stride == 4;
+    if (!strideFits || (triangles && count % 3 != 0))
+        refuse(place, fmt::format("{} of {} elements of {} bytes are not possible", mode, count, stride));
+    const size_t most = attributes ? bytes.size() * 64 / stride : bytes.size() * (triangles ? 3 : 1);
+    if (count == 0 || count > most || count * stride != byteLength)
+        refuse(place, fmt::format("states {} bytes, {} elements of {} bytes, which {} compressed bytes cannot hold",
+                                  byteLength, count, stride, bytes.size()));
+    std::vector<uint8_t> decoded(count * stride);
+    const int failed =
+        attributes  ? meshopt_decodeVertexBuffer(decoded.data(), count, stride, bytes.data(), bytes.size())
+        : triangles ? meshopt_decodeIndexBuffer(decoded.data(), count, stride, bytes.data(), bytes.size())
+                    : meshopt_decodeIndexSequence(decoded.data(), count, stride, bytes.data(), bytes.size());
+    if (failed) refuse(place, fmt::format("cannot be decompressed by EXT_meshopt_compression ({})", mode));
+    if (filter == "NONE") return decoded;
+    const bool octahedral = filter == "OCTAHEDRAL", quaternion = filter == "QUATERNION";
+    if ((!octahedral && !quaternion && filter != "EXPONENTIAL") || !attributes || (octahedral && stride > 8) ||
+        (quaternion && stride != 8))
+        refuse(place, fmt::format("filter '{}' is not possible for {} of {} bytes", filter, mode, stride));
+    if (octahedral && stride != 4 && stride != 8)
+        refuse(place, fmt::format("filter OCTAHEDRAL has a byteStride of {}; expected 4 or 8", stride));
+    if (octahedral)
+        meshopt_decodeFilterOct(decoded.data(), count, stride);
+    else if (quaternion)
+        meshopt_decodeFilterQuat(decoded.data(), count, stride);
+    else
+        meshopt_decodeFilterExp(decoded.data(), count, stride);
+    return decoded;
+}
+
+namespace {
+
+bool startsWith(std::span<const uint8_t> bytes, size_t offset, std::string_view text) {
+    return bytes.size() >= offset + text.size() &&
+           std::equal(text.begin(), text.end(), bytes.begin() + std::ptrdiff_t(offset));
+}
+
+bool isWebp(std::span<const uint8_t> bytes) { return startsWith(bytes, 0, "RIFF") && startsWith(bytes, 8, "WEBP"); }
+
+// Formats that glTF's extensions know and nothing here reads.
+bool isUnreadFormat(std::span<const uint8_t> bytes) {
+    return startsWith(bytes, 0, "\xABKTX 20\xBB") || startsWith(bytes, 4, "ftypavif") || startsWith(bytes, 0, "DDS ");
+}
+
+bool pictureSize(std::span<const uint8_t> bytes, int& width, int& height) {
+    if (isWebp(bytes)) return WebPGetInfo(bytes.data(), bytes.size(), &width, &height) != 0;
+    int channels = 0;
+    return stbi_info_from_memory(bytes.data(), int(bytes.size()), &width, &height, &channels) != 0;
+}
+
+// 4·width·height bytes; false if the picture is broken. Sixteen bits a channel become eight.
+bool decodePicture(std::span<const uint8_t> bytes, int width, int height, std::vector<uint8_t>& rgba) {
+    const size_t size = size_t(4) * size_t(width) * size_t(height);
+    if (isWebp(bytes)) {
+        rgba.resize(size);
+        return WebPDecodeRGBAInto(bytes.data(), bytes.size(), rgba.data(), size, 4 * width) != nullptr;
+    }
+    int channels = 0;
+    const std::unique_ptr<stbi_uc, void (*)(void*)> texels(
+        stbi_load_from_memory(bytes.data(), int(bytes.size()), &width, &height, &channels, 4), stbi_image_free);
+    if (texels) rgba.assign(texels.get(), texels.get() + size);
+    return texels != nullptr;
+}
+
+} // namespace
+
+std::optional<TextureImage> GltfFile::image(size_t index) {
     const json& description = element("images", index, "texture");
     std::string place = fmt::format("image {}", index);
     std::vector<uint8_t> owned;
     std::span<const uint8_t> bytes;
     if (const auto uri = description.find("uri"); uri != description.end()) {
         if (!uri->is_string()) refuse(place, "has a uri that is not text");
-        const std::string text = uri->get<std::string>();
+        const std::string& text = uri->get_ref<const std::string&>();
         owned = resolve(text, place);
         bytes = owned;
         if (schemeOf(text).empty()) place += fmt::format(" '{}'", text);
@@ -297,22 +408,19 @@ TextureImage GltfFile::image(size_t index) {
         bytes = bufferView(unsignedMember(description, "bufferView", none, place), place);
     }
     if (bytes.size() > size_t(std::numeric_limits<int>::max())) refuse(place, "has more than 2 GiB");
-
-    int width = 0, height = 0, channels = 0;
-    if (!stbi_info_from_memory(bytes.data(), int(bytes.size()), &width, &height, &channels))
-        refuse(place, fmt::format("cannot be decoded ({}); expected PNG or JPEG", stbi_failure_reason()));
-    if (width < 1 || height < 1 || width > largestImage || height > largestImage)
-        refuse(place,
-               fmt::format("has {}x{} texels; expected at most {}x{}", width, height, largestImage, largestImage));
-    const std::unique_ptr<stbi_uc, void (*)(void*)> texels(
-        stbi_load_from_memory(bytes.data(), int(bytes.size()), &width, &height, &channels, 4), stbi_image_free);
-    if (!texels) refuse(place, fmt::format("cannot be decoded ({}); expected PNG or JPEG", stbi_failure_reason()));
+    if (isUnreadFormat(bytes)) return std::nullopt;
 
     TextureImage result;
+    const char* undecodable = "cannot be decoded; expected PNG, JPEG or WebP";
+    if (!pictureSize(bytes, result.width, result.height)) refuse(place, undecodable);
+    if (result.width < 1 || result.height < 1 || result.width > largestImage || result.height > largestImage)
+        refuse(place, fmt::format("has {}x{} texels; expected at most {}x{}", result.width, result.height, largestImage,
+                                  largestImage));
+    if (size_t(result.width) * size_t(result.height) / mostTexelsPerByte > bytes.size())
+        refuse(place, fmt::format("states {}x{} texels, which {} bytes cannot hold", result.width, result.height,
+                                  bytes.size()));
+    if (!decodePicture(bytes, result.width, result.height, result.rgba)) refuse(place, undecodable);
     if (const json name = description.value("name", json()); name.is_string()) result.name = name.get<std::string>();
-    result.width = width;
-    result.height = height;
-    result.rgba.assign(texels.get(), texels.get() + size_t(4) * size_t(width) * size_t(height));
     return result;
 }
 

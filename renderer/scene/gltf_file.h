@@ -8,6 +8,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
@@ -20,38 +21,50 @@ public:
     // Reads the JSON of a .gltf or .glb (told apart by the first bytes) and checks what every file must have: version
     // 2, collections that are arrays of objects, only required extensions out of `knownExtensions`. Throws InputError.
     GltfFile(const std::filesystem::path& file, std::span<const std::string_view> knownExtensions);
+    // The same of bytes that were read already; `file` names them, and what they refer to lies beside it.
+    GltfFile(const std::filesystem::path& file, std::vector<uint8_t> bytes,
+             std::span<const std::string_view> knownExtensions);
 
     const std::filesystem::path& path() const { return file_; }
     const nlohmann::json& document() const { return json_; }
 
-    // The bytes of a buffer, buffer view or image. Checked against the real bytes. Throws InputError; `user` says on
-    // whose behalf ("accessor 3").
+    // The bytes of a buffer or buffer view, decompressed where EXT_meshopt_compression is used. Checked against the
+    // real bytes. Throws InputError; `user` says on whose behalf ("accessor 3").
     std::span<const uint8_t> buffer(size_t index, const std::string& user);
     std::span<const uint8_t> bufferView(size_t index, const std::string& user);
-    TextureImage image(size_t index);
+    // A decoded PNG, JPEG or WebP; nothing if it is in one of the formats that are known but not read. Throws
+    // InputError.
+    std::optional<TextureImage> image(size_t index);
 
     [[noreturn]] void refuse(const std::string& place, const std::string& expectation) const;
 
 private:
-    void readBinary(std::span<const uint8_t> bytes);
+    void readBinary();
     void parse(std::string_view text);
     void checkRoot(std::span<const std::string_view> knownExtensions) const;
     const nlohmann::json& element(const char* collection, size_t index, const std::string& user) const;
     size_t unsignedMember(const nlohmann::json& object, const char* name, size_t otherwise,
                           const std::string& place) const;
+    std::span<const uint8_t> bytesOfView(const nlohmann::json& description, const std::string& place);
+    std::vector<uint8_t> decodeMeshopt(const nlohmann::json& compressed, size_t byteLength, const std::string& place);
     std::vector<uint8_t> resolve(const std::string& uri, const std::string& place) const;
     std::vector<uint8_t> readBelowFolder(const std::string& uri, const std::string& place) const;
 
-    struct Buffer {
+    struct Bytes {
         bool loaded = false;
-        std::vector<uint8_t> bytes;
+        std::vector<uint8_t> owned;
+        std::span<const uint8_t> bytes; // of `owned`, or of the binary chunk
     };
     std::filesystem::path file_;
+    std::vector<uint8_t> fileBytes_;
     nlohmann::json json_;
-    std::vector<uint8_t> binaryChunk_;
+    std::span<const uint8_t> binaryChunk_;
     bool hasBinaryChunk_ = false;
-    std::vector<Buffer> buffers_;
+    std::vector<Bytes> buffers_, decodedViews_;
 };
+
+// The object of an extension in an object's "extensions", or null.
+const nlohmann::json* findExtension(const nlohmann::json& object, const char* name);
 
 // Text for one line: control characters become spaces.
 std::string oneLine(std::string_view text);

@@ -1,11 +1,15 @@
 // SPDX-License-Identifier: MIT
 #include "renderer/scene/gpu_scene.h"
 
+#include "renderer/scene/posing.h"
+
 #include <glm/gtc/matrix_transform.hpp>
 
 #include <algorithm>
 #include <bit>
 #include <cstddef>
+#include <limits>
+#include <map>
 #include <tuple>
 
 namespace penumbra {
@@ -52,122 +56,226 @@ GpuScene::TextureHandle GpuScene::upload(const TextureImage& image) {
 }
 
 GpuScene::GpuScene(const SceneState& state) {
-    const Scene& scene = *state.scene();
+    planPoses(state);
+    uploadVertices(*state.scene());
+    planDraws(state);
+    for (const TextureImage& image : state.scene()->textures) textures_.push_back(upload(image));
+    textures_.push_back(upload({.name = "white", .width = 1, .height = 1, .rgba = {255, 255, 255, 255}}));
+    update(state);
+}
 
-    // The scene's vertices, then the square of the ground.
-    const size_t vertices = scene.positions.size(), indexCount = scene.indices.size();
-    groundVertices_ = static_cast<uint32_t>(vertices);
-    const auto joined = [](std::string_view label, const auto& own, const auto& extra) {
-        const size_t bytes = own.size() * sizeof(own[0]), extraBytes = std::size(extra) * sizeof(extra[0]);
-        Buffer buffer(label, bytes + extraBytes, nullptr, GL_DYNAMIC_STORAGE_BIT);
-        if (bytes) buffer.update(0, bytes, own.data());
-        buffer.update(bytes, extraBytes, std::data(extra));
+// Primitives of one mesh may share their vertices; a node then poses them once.
+void GpuScene::planPoses(const SceneState& state) {
+    const Scene& scene = *state.scene();
+    std::map<std::pair<uint32_t, uint32_t>, uint32_t> known; // by node and first vertex
+    for (const Drawable& d : state.drawables()) {
+        firstPosed_.push_back(-1);
+        if (!d.posed) continue;
+        const Primitive& p = state.primitive(d);
+        const Node& node = scene.nodes[d.node];
+        const auto [job, isNew] = known.try_emplace({d.node, p.firstVertex}, posedVertices_);
+        firstPosed_.back() = static_cast<int32_t>(job->second);
+        if (!isNew) continue;
+        const bool skinned = isSkinned(node, p);
+        jobs_.push_back({posedVertices_, p.firstVertex, p.vertexCount, p.firstInfluence, skinned ? p.influenceSets : 0,
+                         skinned ? scene.skins[static_cast<size_t>(node.skin)].firstMatrix : 0, p.firstDelta,
+                         p.morphTargets, node.firstWeight});
+        posedVertices_ += p.vertexCount;
+    }
+    for (PoseJob& job : jobs_) job.firstVertex += posedVertices_;
+}
+
+void GpuScene::uploadVertices(const Scene& scene) {
+    // At rest until they are posed.
+    const auto stream = [&](std::string_view label, const auto& own, const auto& square) {
+        constexpr size_t size = sizeof(own[0]);
+        Buffer buffer(label, (posedVertices_ + own.size() + std::size(square)) * size, nullptr, GL_DYNAMIC_STORAGE_BIT);
+        for (const PoseJob& job : jobs_)
+            buffer.update(job.firstPosed * size, job.vertexCount * size, own.data() + job.firstVertex - posedVertices_);
+        if (!own.empty()) buffer.update(posedVertices_ * size, own.size() * size, own.data());
+        buffer.update((posedVertices_ + own.size()) * size, std::size(square) * size, std::data(square));
         return buffer;
     };
-    const std::vector<glm::vec3> squareNormals(4, glm::vec3(0, 1, 0));
-    const std::vector<glm::vec2> squareUvs(4, glm::vec2(0));
-    positions_ = joined("positions", scene.positions, squarePositions);
-    normals_ = joined("normals", scene.normals, squareNormals);
-    uvs_ = joined("uvs", scene.uvs, squareUvs);
-    indices_ = joined("indices", scene.indices, squareIndices);
+    groundVertices_ = posedVertices_ + static_cast<uint32_t>(scene.positions.size());
+    positions_ = stream("positions", scene.positions, squarePositions);
+    normals_ = stream("normals", scene.normals, std::vector<glm::vec3>(4, glm::vec3(0, 1, 0)));
+    uvs_ = stream("uvs", scene.uvs, std::vector<glm::vec2>(4, glm::vec2(0)));
+    if (!scene.colours.empty())
+        colours_ = stream("colours", scene.colours, std::vector<glm::u16vec4>(4, glm::u16vec4(65535)));
 
-    // Commands in an order that makes long batches: all opaque casters stand together.
+    const size_t bytes = scene.indices.size() * sizeof(uint32_t);
+    indices_ = Buffer("indices", bytes + sizeof(squareIndices), nullptr, GL_DYNAMIC_STORAGE_BIT);
+    if (bytes) indices_.update(0, bytes, scene.indices.data());
+    indices_.update(bytes, sizeof(squareIndices), squareIndices);
+
+    if (jobs_.empty()) return;
+    const auto whole = [](std::string_view label, const auto& list, GLbitfield flags = 0) {
+        const size_t size = std::max<size_t>(list.size(), 1) * sizeof(list[0]); // a buffer of nothing cannot be bound
+        return Buffer(label, size, list.empty() ? nullptr : list.data(), flags);
+    };
+    lastPositions_ = Buffer("last positions", posedVertices_ * sizeof(glm::vec3), nullptr, GL_DYNAMIC_STORAGE_BIT);
+    influences_ = whole("influences", scene.influences);
+    deltas_ = whole("morph deltas", scene.morphDeltas);
+    jobBuffer_ = whole("pose jobs", jobs_);
+    weights_ = whole("morph weights", scene.restWeights, GL_DYNAMIC_STORAGE_BIT);
+    size_t joints = 0;
+    for (const Skin& skin : scene.skins) joints += skin.joints.size();
+    jointRows_.resize(joints);
+    joints_ = whole("joints", jointRows_, GL_DYNAMIC_STORAGE_BIT);
+}
+
+// Commands in an order that makes long batches: all opaque casters stand together. Instances of one primitive are one
+// command.
+void GpuScene::planDraws(const SceneState& state) {
+    const Scene& scene = *state.scene();
     struct Keyed {
         uint32_t drawable;
         Batch batch;
     };
     std::vector<Keyed> order;
-    for (uint32_t i = 0; i < state.drawables().size(); ++i) {
+    const uint32_t ground = static_cast<uint32_t>(state.drawables().size());
+    for (uint32_t i = 0; i < ground; ++i) {
         const Drawable& d = state.drawables()[i];
-        const Primitive& primitive = scene.meshes[d.mesh].primitives[d.primitive];
-        const Material& material = scene.materials[static_cast<size_t>(primitive.material)];
-        const bool mirrored = glm::determinant(glm::mat3(state.pose().worldFromNode[d.node])) < 0;
-        order.push_back({i, {0, 1, material.texture, material.masked, material.doubleSided, mirrored, true, d.closed}});
+        const Primitive& p = state.primitive(d);
+        const Material& material = scene.materials[static_cast<size_t>(p.material)];
+        const Node& node = scene.nodes[d.node];
+        // Of a skin all joints are mirrored or none is.
+        const glm::mat4& placed =
+            isSkinned(node, p) ? state.pose().worldFromMesh[scene.skins[static_cast<size_t>(node.skin)].firstMatrix]
+                               : state.pose().worldFromNode[d.node];
+        const bool mirrored = glm::determinant(glm::mat3(placed)) < 0;
+        order.push_back(
+            {i, {0, 0, material.texture, material.masked, material.doubleSided, mirrored, true, p.closed, d.posed}});
     }
-    order.push_back({static_cast<uint32_t>(state.drawables().size()), {0, 1, -1, false, true, false, false, false}});
+    order.push_back({ground, {0, 0, -1, false, true, false, false, false, false}});
     const auto key = [](const Batch& b) {
-        return std::tuple(!b.casts, b.masked, b.texture, b.closed, b.doubleSided, b.mirrored);
+        return std::tuple(!b.casts, b.masked, b.texture, b.posed, b.closed, b.doubleSided, b.mirrored);
     };
-    std::stable_sort(order.begin(), order.end(),
-                     [&](const Keyed& a, const Keyed& b) { return key(a.batch) < key(b.batch); });
+    const auto drawn = [&](const Keyed& k) { // equal: instances of the same
+        if (k.drawable == ground) return std::pair(~0u, ~0u);
+        const Drawable& d = state.drawables()[k.drawable];
+        return d.posed ? std::pair(~0u - 1, k.drawable) : std::pair(d.mesh, d.primitive);
+    };
+    std::stable_sort(order.begin(), order.end(), [&](const Keyed& a, const Keyed& b) {
+        return std::pair(key(a.batch), drawn(a)) < std::pair(key(b.batch), drawn(b));
+    });
 
     std::vector<Command> commands;
-    for (const Keyed& keyed : order) {
-        const uint32_t index = static_cast<uint32_t>(commands.size());
+    for (size_t i = 0; i < order.size(); ++i) {
+        const Keyed& keyed = order[i];
+        const bool newBatch = i == 0 || key(order[i - 1].batch) != key(keyed.batch);
+        const bool newCommand = newBatch || drawn(order[i - 1]) != drawn(keyed);
+        const uint32_t draw = static_cast<uint32_t>(draws_.size());
         DrawData data{affineRows(glm::mat4(1)), groundColour, glm::vec4(0), affineRows(glm::mat4(1))};
-        if (keyed.drawable < state.drawables().size()) {
-            const Drawable& d = state.drawables()[keyed.drawable];
-            const Primitive& p = scene.meshes[d.mesh].primitives[d.primitive];
-            const Material& material = scene.materials[static_cast<size_t>(p.material)];
-            commands.push_back({p.indexCount, 1, p.firstIndex, static_cast<int32_t>(p.firstVertex), index});
-            data.baseColour = material.baseColour;
-            data.emissive_cutoff = glm::vec4(material.emissive, material.alphaCutoff);
+        if (keyed.drawable == ground) {
+            groundCommand_ = static_cast<uint32_t>(commands.size());
+            commands.push_back({std::size(squareIndices), 0, static_cast<uint32_t>(scene.indices.size()),
+                                static_cast<int32_t>(groundVertices_), draw});
         } else {
-            commands.push_back({std::size(squareIndices), 0, static_cast<uint32_t>(indexCount),
-                                static_cast<int32_t>(groundVertices_), index});
+            const Drawable& d = state.drawables()[keyed.drawable];
+            const Primitive& p = state.primitive(d);
+            const Material& material = scene.materials[static_cast<size_t>(p.material)];
+            const int32_t posed = firstPosed_[keyed.drawable];
+            const uint32_t firstVertex = posed >= 0 ? static_cast<uint32_t>(posed) : posedVertices_ + p.firstVertex;
+            if (newCommand)
+                commands.push_back({p.indexCount, 0, p.firstIndex, static_cast<int32_t>(firstVertex), draw});
+            ++commands.back().instances;
+            // What the mask's texture must have at least for its texel to exist.
+            const float least = material.alphaCutoff <= 0    ? 0.0f
+                                : material.baseColour.a <= 0 ? std::numeric_limits<float>::max()
+                                                             : material.alphaCutoff / material.baseColour.a;
+            data.baseColour = glm::vec4(glm::vec3(material.baseColour), least);
+            data.emissive_unlit = glm::vec4(material.emissive, material.unlit ? 1 : 0);
         }
         draws_.push_back(data);
-        drawableOfCommand_.push_back(keyed.drawable);
-        if (batches_.empty() || key(batches_.back()) != key(keyed.batch)) {
+        drawableOfDraw_.push_back(keyed.drawable);
+        if (newBatch) {
             batches_.push_back(keyed.batch);
-            batches_.back().firstCommand = index;
-        } else {
-            ++batches_.back().commandCount;
+            batches_.back().firstCommand = static_cast<uint32_t>(commands.size()) - 1;
         }
+        if (newCommand) ++batches_.back().commandCount;
     }
     commands_ = Buffer("draw commands", commands.size() * sizeof(Command), commands.data(), GL_DYNAMIC_STORAGE_BIT);
     drawBuffer_ = Buffer("draws", draws_.size() * sizeof(DrawData), draws_.data(), GL_DYNAMIC_STORAGE_BIT);
+}
 
+namespace {
+// The bindings of vertex buffers; locations 3 to 10 are instanced.
+constexpr GLuint positionBinding = 0, normalBinding = 1, uvBinding = 2, instancedBinding = 3, colourBinding = 11,
+                 lastPositionBinding = 12;
+} // namespace
+
+void GpuScene::makeVertexArray() const {
     GLuint vao = 0;
     glCreateVertexArrays(1, &vao);
     vertexArray_ = Handle<destroyVertexArray>(vao);
     glObjectLabel(GL_VERTEX_ARRAY, vao, -1, "scene");
-    const auto attribute = [&](GLuint location, const Buffer& buffer, GLint components, GLsizei stride) {
+    const auto attribute = [&](GLuint location, const Buffer& buffer, GLint components, GLenum type, GLsizei stride) {
         glVertexArrayVertexBuffer(vao, location, buffer.name(), 0, stride);
-        glVertexArrayAttribFormat(vao, location, components, GL_FLOAT, GL_FALSE, 0);
+        glVertexArrayAttribFormat(vao, location, components, type, type != GL_FLOAT, 0);
         glVertexArrayAttribBinding(vao, location, location);
         glEnableVertexArrayAttrib(vao, location);
     };
-    attribute(0, positions_, 3, sizeof(glm::vec3));
-    attribute(1, normals_, 3, sizeof(glm::vec3));
-    attribute(2, uvs_, 2, sizeof(glm::vec2));
-    constexpr GLuint firstInstanced = 3, instanced = sizeof(DrawData) / sizeof(glm::vec4);
-    glVertexArrayVertexBuffer(vao, firstInstanced, drawBuffer_.name(), 0, sizeof(DrawData));
-    glVertexArrayBindingDivisor(vao, firstInstanced, 1);
+    attribute(positionBinding, positions_, 3, GL_FLOAT, sizeof(glm::vec3));
+    attribute(normalBinding, normals_, 3, GL_FLOAT, sizeof(glm::vec3));
+    attribute(uvBinding, uvs_, 2, GL_FLOAT, sizeof(glm::vec2));
+    attribute(lastPositionBinding, positions_, 3, GL_FLOAT, sizeof(glm::vec3));
+    if (hasColours()) attribute(colourBinding, colours_, 4, GL_UNSIGNED_SHORT, sizeof(glm::u16vec4));
+    constexpr GLuint instanced = sizeof(DrawData) / sizeof(glm::vec4);
+    static_assert(instancedBinding + instanced == colourBinding);
+    glVertexArrayVertexBuffer(vao, instancedBinding, drawBuffer_.name(), 0, sizeof(DrawData));
+    glVertexArrayBindingDivisor(vao, instancedBinding, 1);
     for (GLuint i = 0; i < instanced; ++i) {
-        glVertexArrayAttribFormat(vao, firstInstanced + i, 4, GL_FLOAT, GL_FALSE, i * sizeof(glm::vec4));
-        glVertexArrayAttribBinding(vao, firstInstanced + i, firstInstanced);
-        glEnableVertexArrayAttrib(vao, firstInstanced + i);
+        glVertexArrayAttribFormat(vao, instancedBinding + i, 4, GL_FLOAT, GL_FALSE, i * sizeof(glm::vec4));
+        glVertexArrayAttribBinding(vao, instancedBinding + i, instancedBinding);
+        glEnableVertexArrayAttrib(vao, instancedBinding + i);
     }
     glVertexArrayElementBuffer(vao, indices_.name());
-
-    for (const TextureImage& image : scene.textures) textures_.push_back(upload(image));
-    textures_.push_back(upload({.name = "white", .width = 1, .height = 1, .rgba = {255, 255, 255, 255}}));
-    update(state);
 }
 
 void GpuScene::update(const SceneState& state) {
+    if (state.posing()) {
+        for (size_t i = 0; i < jointRows_.size(); ++i) jointRows_[i] = affineRows(state.pose().worldFromMesh[i]);
+        if (!jointRows_.empty()) joints_.update(0, jointRows_.size() * sizeof(jointRows_[0]), jointRows_.data());
+        const std::vector<float>& weights = state.pose().morphWeights;
+        if (!weights.empty()) weights_.update(0, weights.size() * sizeof(float), weights.data());
+    }
     // One frame after the last movement the previous matrices still have to catch up.
     if (sentVersion_ == state.poseVersion() && !sentMotion_) return;
     sentVersion_ = state.poseVersion();
     sentMotion_ = state.moving();
     for (size_t i = 0; i < draws_.size(); ++i) {
-        const uint32_t drawable = drawableOfCommand_[i];
+        const uint32_t drawable = drawableOfDraw_[i];
         if (drawable < state.drawables().size()) {
-            const uint32_t node = state.drawables()[drawable].node;
-            draws_[i].worldFromModel = affineRows(state.pose().worldFromNode[node]);
-            draws_[i].lastWorldFromModel = affineRows(state.lastPose().worldFromNode[node]);
+            const Drawable& d = state.drawables()[drawable];
+            const Primitive& p = state.primitive(d);
+            draws_[i].worldFromModel = affineRows(worldFromModel(state.pose(), *state.scene(), d.node, p));
+            draws_[i].lastWorldFromModel = affineRows(worldFromModel(state.lastPose(), *state.scene(), d.node, p));
         } else {
             const uint32_t instances = state.ground() ? 1 : 0;
             if (instances)
                 draws_[i].worldFromModel = draws_[i].lastWorldFromModel = affineRows(worldFromSquare(*state.ground()));
-            commands_.update(i * sizeof(Command) + offsetof(Command, instances), sizeof(uint32_t), &instances);
+            commands_.update(groundCommand_ * sizeof(Command) + offsetof(Command, instances), sizeof(uint32_t),
+                             &instances);
         }
     }
     drawBuffer_.update(0, draws_.size() * sizeof(DrawData), draws_.data());
 }
 
+void GpuScene::pose(const Program& program) const {
+    const Buffer* const buffers[] = {&jobBuffer_,  &positions_, &normals_, &lastPositions_,
+                                     &influences_, &deltas_,    &joints_,  &weights_};
+    for (GLuint i = 0; i < std::size(buffers); ++i) glBindBufferBase(GL_SHADER_STORAGE_BUFFER, i, buffers[i]->name());
+    uint32_t largest = 0;
+    for (const PoseJob& job : jobs_) largest = std::max(largest, job.vertexCount);
+    constexpr uint32_t groupSize = 64; // of shaders/pose.glsl
+    glUseProgram(program.name());
+    glDispatchCompute((largest + groupSize - 1) / groupSize, static_cast<GLuint>(jobs_.size()), 1);
+    glMemoryBarrier(GL_VERTEX_ATTRIB_ARRAY_BARRIER_BIT | GL_SHADER_STORAGE_BARRIER_BIT);
+}
+
 void GpuScene::draw(const Draw& draw, const Programs& programs) const {
+    if (!vertexArray_.get()) makeVertexArray();
     glBindVertexArray(vertexArray_.get());
     glBindBuffer(GL_DRAW_INDIRECT_BUFFER, commands_.name());
 
@@ -195,7 +303,7 @@ void GpuScene::draw(const Draw& draw, const Programs& programs) const {
         size_t end = i;
         uint32_t commands = 0;
         const auto alike = [&](const Batch& other) {
-            return other.casts == batch.casts && &programOf(other) == &program &&
+            return other.casts == batch.casts && other.posed == batch.posed && &programOf(other) == &program &&
                    (unit < 0 || other.texture == batch.texture) && culls(other) == culls(batch) &&
                    (!culls(batch) || other.mirrored == batch.mirrored);
         };
@@ -208,6 +316,8 @@ void GpuScene::draw(const Draw& draw, const Programs& programs) const {
             glBindTextureUnit(static_cast<GLuint>(unit), textures_[texture].get());
             glBindSampler(static_cast<GLuint>(unit), 0);
         }
+        glVertexArrayVertexBuffer(vertexArray_.get(), lastPositionBinding,
+                                  (batch.posed ? lastPositions_ : positions_).name(), 0, sizeof(glm::vec3));
         culls(batch) ? glEnable(GL_CULL_FACE) : glDisable(GL_CULL_FACE);
         glCullFace(draw.faces == Faces::Back ? GL_FRONT : GL_BACK);
         glFrontFace(batch.mirrored ? GL_CW : GL_CCW);

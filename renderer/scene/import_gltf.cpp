@@ -1,5 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "renderer/core/error.h"
+#include "renderer/scene/closed_surface.h"
+#include "renderer/scene/gltf_accessors.h"
+#include "renderer/scene/gltf_draco.h"
 #include "renderer/scene/gltf_file.h"
 
 #include <fmt/format.h>
@@ -10,7 +13,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <cstring>
 #include <limits>
 #include <map>
 #include <numeric>
@@ -21,70 +23,37 @@ namespace {
 using json = nlohmann::json;
 
 // Extensions that a scene may require: read, or without effect on geometry and light.
-constexpr std::string_view readExtensions[] = {"KHR_lights_punctual", "KHR_texture_transform", "KHR_mesh_quantization"};
-constexpr std::string_view acceptedExtensions[] = {"KHR_lights_punctual",
-                                                   "KHR_texture_transform",
-                                                   "KHR_mesh_quantization",
-                                                   "KHR_materials_unlit",
-                                                   "KHR_materials_emissive_strength",
-                                                   "KHR_materials_clearcoat",
-                                                   "KHR_materials_ior",
-                                                   "KHR_materials_iridescence",
-                                                   "KHR_materials_sheen",
-                                                   "KHR_materials_specular",
-                                                   "KHR_materials_transmission",
-                                                   "KHR_materials_variants",
-                                                   "KHR_materials_volume",
-                                                   "KHR_materials_pbrSpecularGlossiness"};
+constexpr std::string_view readExtensions[] = {"KHR_lights_punctual",
+                                               "KHR_texture_transform",
+                                               "KHR_mesh_quantization",
+                                               "KHR_draco_mesh_compression",
+                                               "EXT_meshopt_compression",
+                                               "EXT_mesh_gpu_instancing",
+                                               "KHR_materials_unlit",
+                                               "KHR_materials_variants",
+                                               "KHR_materials_pbrSpecularGlossiness",
+                                               "EXT_texture_webp"};
+constexpr std::string_view harmlessExtensions[] = {"KHR_materials_anisotropy",   "KHR_materials_clearcoat",
+                                                   "KHR_materials_dispersion",   "KHR_materials_emissive_strength",
+                                                   "KHR_materials_ior",          "KHR_materials_iridescence",
+                                                   "KHR_materials_sheen",        "KHR_materials_specular",
+                                                   "KHR_materials_transmission", "KHR_materials_volume",
+                                                   "KHR_texture_basisu",         "EXT_texture_avif"};
 
-constexpr float largestNumber = 1e9f; // [m]; beyond it products of coordinates leave the range of float
 // A few bytes of a file may be used again and again; these keep what comes of it within the memory of a machine.
 constexpr size_t mostVertices = size_t{1} << 26, mostIndices = size_t{1} << 28, mostKeys = size_t{1} << 26;
-constexpr size_t mostTextureBytes = size_t{1} << 32, mostNotes = 100;
-constexpr size_t mostZeros = size_t{1} << 20; // elements of an accessor that has no bytes of its own
+constexpr size_t mostTextureBytes = size_t{1} << 32, mostNotes = 100, mostNodes = size_t{1} << 22;
+constexpr size_t mostTargets = 4096, mostJoints = 65536;
+constexpr size_t mostInfluenceSets = 2; // of four joints each
 
-bool usable(float value) { return std::abs(value) <= largestNumber; } // NaN and infinity are not
-
-// Where the elements of an accessor lie. Empty bytes: all are zero.
-struct Elements {
-    std::span<const uint8_t> bytes;
-    size_t count = 0, stride = 0, components = 0, componentSize = 0;
-    int componentType = 0;
-    bool normalised = false;
-};
-
-template <class T> T loadAs(const uint8_t* bytes) {
-    T value;
-    std::memcpy(&value, bytes, sizeof value);
-    return value;
+bool contains(std::span<const std::string_view> list, std::string_view name) {
+    return std::find(list.begin(), list.end(), name) != list.end();
 }
 
-// glTF 2.0 specification, 3.11: integers that stand for [0, 1] or [-1, 1].
-float componentAt(const uint8_t* bytes, int type, bool normalised) {
-    const auto scaled = [normalised](float value, float largest) {
-        return normalised ? std::max(value / largest, -1.0f) : value;
-    };
-    switch (type) {
-    case TINYGLTF_COMPONENT_TYPE_BYTE: return scaled(loadAs<int8_t>(bytes), 127);
-    case TINYGLTF_COMPONENT_TYPE_UNSIGNED_BYTE: return scaled(*bytes, 255);
-    case TINYGLTF_COMPONENT_TYPE_SHORT: return scaled(loadAs<int16_t>(bytes), 32767);
-    case TINYGLTF_COMPONENT_TYPE_UNSIGNED_SHORT: return scaled(loadAs<uint16_t>(bytes), 65535);
-    case TINYGLTF_COMPONENT_TYPE_UNSIGNED_INT: return scaled(float(loadAs<uint32_t>(bytes)), 4294967295.0f);
-    default: return loadAs<float>(bytes);
-    }
-}
-
-uint32_t integerAt(const uint8_t* bytes, int type) {
-    switch (type) {
-    case TINYGLTF_COMPONENT_TYPE_UNSIGNED_BYTE: return *bytes;
-    case TINYGLTF_COMPONENT_TYPE_UNSIGNED_SHORT: return loadAs<uint16_t>(bytes);
-    default: return loadAs<uint32_t>(bytes);
-    }
-}
-
-bool isUnsigned(int type) {
-    return type == TINYGLTF_COMPONENT_TYPE_UNSIGNED_BYTE || type == TINYGLTF_COMPONENT_TYPE_UNSIGNED_SHORT ||
-           type == TINYGLTF_COMPONENT_TYPE_UNSIGNED_INT;
+std::vector<std::string_view> acceptedExtensions() {
+    std::vector<std::string_view> names(std::begin(readExtensions), std::end(readExtensions));
+    names.insert(names.end(), std::begin(harmlessExtensions), std::end(harmlessExtensions));
+    return names;
 }
 
 // KHR_texture_transform: uv of the picture from uv of the vertex.
@@ -108,28 +77,48 @@ struct TextureCoordinates {
 
 class Importer {
 public:
-    explicit Importer(const std::filesystem::path& file) : file_(file, acceptedExtensions) {}
+    Importer(GltfFile file, const ImportChoice& choice, Progress* progress)
+        : file_(std::move(file))
+        , choice_(choice)
+        , progress_(progress) {}
 
     Scene run() {
         scene_.name = file_.path().stem().string();
         scene_.file = file_.path();
         parseModel();
-        checkBytes();
+        accessors_.checkAll();
         noteExtensions();
-        for (size_t i = 0; i < model_.materials.size(); ++i) addMaterial(i);
-        for (size_t i = 0; i < model_.meshes.size(); ++i) addMesh(i);
-        finishMaterialsAndNormals();
+        chooseScene();
+        chooseVariant();
+        for (size_t i = 0; i < model_.materials.size(); ++i) {
+            report("decoding pictures", 0.1 + 0.4 * double(i) / double(model_.materials.size()));
+            addMaterial(i);
+        }
+        scene_.materials.push_back(
+            {.name = "default"}); // of primitives without one; also keeps the list from being empty
+        for (size_t i = 0; i < model_.meshes.size(); ++i) {
+            report("reading meshes", 0.5 + 0.3 * double(i) / double(model_.meshes.size()));
+            addMesh(i);
+        }
         addNodes();
+        for (size_t i = 0; i < model_.skins.size(); ++i) addSkin(i);
+        for (size_t i = 0; i < model_.nodes.size(); ++i) checkSkin(i);
         for (size_t i = 0; i < model_.animations.size(); ++i) addAnimation(i);
         checkExtent();
+        findClosedSurfaces();
         return std::move(scene_);
     }
 
 private:
     struct VertexRange {
         uint32_t first = 0, count = 0;
+        uint32_t influenceSets = 0, firstInfluence = 0;
+        uint32_t morphTargets = 0, firstDelta = 0;
     };
 
+    void report(const char* doing, double share) {
+        if (progress_) progress_->report(doing, share);
+    }
     void note(const std::string& text) {
         const std::string line = oneLine(text);
         const bool isNew = std::find(scene_.notes.begin(), scene_.notes.end(), line) == scene_.notes.end();
@@ -142,11 +131,46 @@ private:
         return list[size_t(index)];
     }
 
-    // Buffers and images are left out of what tinygltf sees: their bytes are read and checked by GltfFile.
+    // --- members of JSON that tinygltf does not look at, or not always in the same way -------------------------------
+
+    const json& element(const char* collection, size_t index) const { return file_.document()[collection][index]; }
+    int integerMember(const json& object, const char* name, int otherwise, const std::string& place) const {
+        const auto found = object.find(name);
+        if (found == object.end()) return otherwise;
+        const double value = found->is_number() ? found->get<double>() : -1;
+        if (!(value >= 0 && value < 1e9) || value != std::floor(value))
+            file_.refuse(place, fmt::format("{} is {}; expected a whole number", name, found->dump()));
+        return int(value);
+    }
+    // `into` keeps what it has where there is no such member.
+    template <int N>
+    void numbersMember(const json& object, const char* name, glm::vec<N, float>& into, const std::string& place) const {
+        const auto found = object.find(name);
+        if (found == object.end()) return;
+        if (!found->is_array() || found->size() != size_t(N))
+            file_.refuse(place, fmt::format("{} is not an array of {} numbers", name, N));
+        for (int i = 0; i < N; ++i) into[i] = numberOf((*found)[size_t(i)], name, place);
+    }
+    float numberOf(const json& value, const char* name, const std::string& place) const {
+        const float number = value.is_number() ? value.get<float>() : std::numeric_limits<float>::quiet_NaN();
+        if (!usableNumber(number)) file_.refuse(place, fmt::format("{} is {}; expected a number", name, value.dump()));
+        return number;
+    }
+    std::string nameOr(const json& object, const std::string& otherwise) const {
+        const auto found = object.find("name");
+        return found != object.end() && found->is_string() ? oneLine(found->get<std::string>()) : otherwise;
+    }
+
+    // Buffers and images are left out of what tinygltf sees: their bytes are read and checked by GltfFile. So are the
+    // indices of Draco's primitives, for which it would want a bufferView.
     void parseModel() {
-        json document;
+        json document, empty = json::array();
         for (const auto& [key, value] : file_.document().items())
             if (key != "buffers" && key != "images") document[key] = value;
+        for (json& mesh : document.contains("meshes") ? document["meshes"] : empty)
+            for (json& primitive : mesh.contains("primitives") ? mesh["primitives"] : empty)
+                if (primitive.is_object() && findExtension(primitive, "KHR_draco_mesh_compression"))
+                    primitive.erase("indices");
         const std::string text = document.dump();
         std::string error, warning;
         bool read = false;
@@ -165,130 +189,52 @@ private:
                 file_.refuse(name, "has elements that are not understood");
         };
         complete("accessors", model_.accessors.size());
+        complete("animations", model_.animations.size());
         complete("bufferViews", model_.bufferViews.size());
         complete("materials", model_.materials.size());
         complete("meshes", model_.meshes.size());
         complete("nodes", model_.nodes.size());
+        complete("samplers", model_.samplers.size());
+        complete("scenes", model_.scenes.size());
+        complete("skins", model_.skins.size());
+        complete("textures", model_.textures.size());
     }
 
     void noteExtensions() {
         for (const std::string& name : model_.extensionsUsed)
-            if (std::find(std::begin(readExtensions), std::end(readExtensions), name) == std::end(readExtensions))
-                note(fmt::format("extension {} is not read", name));
-        if (!model_.skins.empty()) note("skinning is not read: skinned meshes stand in their bind pose");
+            if (!contains(readExtensions, name)) note(fmt::format("extension {} is not read", name));
     }
 
-    // Also what no mesh uses: a file with a hole is better refused than half shown.
-    void checkBytes() {
-        for (size_t i = 0; i < model_.bufferViews.size(); ++i) file_.bufferView(i, "scene");
-        for (size_t i = 0; i < model_.accessors.size(); ++i) elements(int(i), fmt::format("accessor {}", i));
+    // --- what is taken of the file -----------------------------------------------------------------------------------
+
+    int chosenOf(const std::vector<std::string>& names, const std::string& wanted, const char* what) const {
+        const auto found = std::find(names.begin(), names.end(), wanted);
+        if (found != names.end()) return int(found - names.begin());
+        const std::vector<std::string_view> views(names.begin(), names.end());
+        file_.refuse(fmt::format("{} '{}'", what, wanted),
+                     names.empty()
+                         ? "the file has none"
+                         : fmt::format("is not one of {}{}", fmt::join(names, ", "), suggestion(wanted, views)));
     }
 
-    // --- accessors ---------------------------------------------------------------------------------------------------
-
-    Elements view(int bufferView, size_t byteOffset, size_t count, size_t components, int componentType,
-                  const std::string& place) {
-        Elements e;
-        e.count = count;
-        e.components = components;
-        e.componentType = componentType;
-        const bool known = componentType >= TINYGLTF_COMPONENT_TYPE_BYTE &&
-                           componentType <= TINYGLTF_COMPONENT_TYPE_FLOAT &&
-                           componentType != TINYGLTF_COMPONENT_TYPE_INT;
-        if (!known) file_.refuse(place, fmt::format("has component type {}, which glTF does not know", componentType));
-        e.componentSize = size_t(tinygltf::GetComponentSizeInBytes(uint32_t(componentType)));
-        const size_t size = e.componentSize * components;
-        const auto& description = at(model_.bufferViews, bufferView, "bufferView", place);
-        e.stride = description.byteStride == 0 ? size : description.byteStride;
-        if (e.stride < size)
-            file_.refuse(place, fmt::format("has elements of {} bytes but a byteStride of {}", size, e.stride));
-        e.bytes = file_.bufferView(size_t(bufferView), place);
-        const size_t available = e.bytes.size();
-        if (byteOffset > available || size > available - byteOffset ||
-            count - 1 > (available - byteOffset - size) / e.stride)
-            file_.refuse(place, fmt::format("has {} elements of {} bytes from byte {} on, more than the {} bytes of "
-                                            "bufferView {}",
-                                            count, size, byteOffset, available, bufferView));
-        e.bytes = e.bytes.subspan(byteOffset);
-        return e;
+    void chooseScene() {
+        for (size_t i = 0; i < model_.scenes.size(); ++i)
+            scene_.sceneNames.push_back(nameOr(element("scenes", i), fmt::format("scene {}", i)));
+        scene_.chosenScene = std::max(model_.defaultScene, 0);
+        if (!choice_.scene.empty()) scene_.chosenScene = chosenOf(scene_.sceneNames, choice_.scene, "scene");
     }
 
-    Elements elements(int index, const std::string& place) {
-        const tinygltf::Accessor& accessor = at(model_.accessors, index, "accessor", place);
-        const auto components = size_t(tinygltf::GetNumComponentsInType(uint32_t(accessor.type)));
-        if (accessor.count == 0) file_.refuse(place, "has a count of 0; expected at least 1");
-        Elements e;
-        if (accessor.bufferView >= 0) {
-            e = view(accessor.bufferView, accessor.byteOffset, accessor.count, components, accessor.componentType,
-                     place);
-        } else {
-            if (accessor.count > mostZeros)
-                file_.refuse(place, fmt::format("has {} elements and no bufferView", accessor.count));
-            e.count = accessor.count;
-            e.components = components;
-            e.componentType = accessor.componentType;
+    // KHR_materials_variants.
+    void chooseVariant() {
+        if (const json* extension = findExtension(file_.document(), "KHR_materials_variants")) {
+            const json variants = extension->value("variants", json::array());
+            if (!variants.is_array()) file_.refuse("KHR_materials_variants", "expected an array of variants");
+            for (size_t i = 0; i < variants.size(); ++i)
+                scene_.variantNames.push_back(variants[i].is_object()
+                                                  ? nameOr(variants[i], fmt::format("variant {}", i))
+                                                  : fmt::format("variant {}", i));
         }
-        e.normalised = accessor.normalized;
-        return e;
-    }
-
-    std::string accessorPlace(int index, const std::string& user) const {
-        return fmt::format("accessor {}, {}", index, user);
-    }
-
-    // All components of all elements, sparse ones replaced. They are finite.
-    std::vector<float> readFloats(int index, std::initializer_list<size_t> allowedComponents, const std::string& user) {
-        const std::string place = accessorPlace(index, user);
-        const Elements e = elements(index, place);
-        if (std::find(allowedComponents.begin(), allowedComponents.end(), e.components) == allowedComponents.end())
-            file_.refuse(place,
-                         fmt::format("has {} components; expected {}", e.components, *allowedComponents.begin()));
-        std::vector<float> values(e.count * e.components, 0.0f);
-        const auto copy = [&](const Elements& from, size_t i, size_t to) {
-            for (size_t c = 0; c < e.components; ++c)
-                values[to * e.components + c] = componentAt(
-                    from.bytes.data() + i * from.stride + c * from.componentSize, from.componentType, e.normalised);
-        };
-        if (!e.bytes.empty())
-            for (size_t i = 0; i < e.count; ++i) copy(e, i, i);
-
-        const auto& sparse = model_.accessors[size_t(index)].sparse;
-        if (sparse.isSparse) {
-            if (sparse.count < 1 || size_t(sparse.count) > e.count || int64_t(sparse.indices.byteOffset) < 0 ||
-                int64_t(sparse.values.byteOffset) < 0 || !isUnsigned(sparse.indices.componentType))
-                file_.refuse(place, "has a sparse part with an impossible count, offset or type");
-            const auto count = size_t(sparse.count);
-            const Elements at = view(sparse.indices.bufferView, size_t(sparse.indices.byteOffset), count, 1,
-                                     sparse.indices.componentType, place);
-            const Elements with = view(sparse.values.bufferView, size_t(sparse.values.byteOffset), count, e.components,
-                                       e.componentType, place);
-            for (size_t i = 0; i < count; ++i) {
-                const uint32_t target = integerAt(at.bytes.data() + i * at.stride, at.componentType);
-                if (target >= e.count)
-                    file_.refuse(place, fmt::format("has a sparse index {} of {} elements", target, e.count));
-                copy(with, i, target);
-            }
-        }
-        const auto bad = std::find_if_not(values.begin(), values.end(), usable);
-        if (bad != values.end())
-            file_.refuse(place, fmt::format("element {} is {}; expected a number of at most {}",
-                                            size_t(bad - values.begin()) / e.components, *bad, largestNumber));
-        return values;
-    }
-
-    std::vector<uint32_t> readIndices(int index, size_t vertexCount, const std::string& user) {
-        const std::string place = accessorPlace(index, user);
-        const Elements e = elements(index, place);
-        if (e.components != 1 || !isUnsigned(e.componentType) || e.bytes.empty())
-            file_.refuse(place, "expected indices: unsigned integers with a bufferView");
-        std::vector<uint32_t> indices(e.count);
-        for (size_t i = 0; i < e.count; ++i) {
-            indices[i] = integerAt(e.bytes.data() + i * e.stride, e.componentType);
-            if (indices[i] >= vertexCount)
-                file_.refuse(place, fmt::format("index {} is {}; expected less than the {} vertices", i, indices[i],
-                                                vertexCount));
-        }
-        return indices;
+        if (!choice_.variant.empty()) scene_.chosenVariant = chosenOf(scene_.variantNames, choice_.variant, "variant");
     }
 
     // --- materials ---------------------------------------------------------------------------------------------------
@@ -303,11 +249,17 @@ private:
             to.baseColour[int(c)] = unitNumber(pbr.baseColorFactor[c], "baseColorFactor", place);
         for (size_t c = 0; c < std::min<size_t>(3, from.emissiveFactor.size()); ++c)
             to.emissive[int(c)] = unitNumber(from.emissiveFactor[c], "emissiveFactor", place);
+        if (from.emissiveTexture.index >= 0) {
+            to.emissive = glm::vec3(0); // the factor without its texture would make all of it shine
+            note("emissive textures are not read");
+        }
         to.doubleSided = from.doubleSided;
+        const json& description = element("materials", index);
+        to.unlit = findExtension(description, "KHR_materials_unlit") != nullptr;
         if (from.alphaMode == "MASK") {
             to.masked = true;
             to.alphaCutoff = float(from.alphaCutoff);
-            if (!usable(to.alphaCutoff)) file_.refuse(place, "alphaCutoff is not a number");
+            if (!usableNumber(to.alphaCutoff)) file_.refuse(place, "alphaCutoff is not a number");
         } else if (from.alphaMode == "BLEND") {
             to.masked = true;
             note(fmt::format("material '{}' is blended; it is drawn cut out at half of its alpha", from.name));
@@ -315,12 +267,24 @@ private:
             file_.refuse(place, fmt::format("alphaMode is '{}'; expected OPAQUE, MASK or BLEND", from.alphaMode));
         }
         TextureCoordinates coordinates;
-        if (pbr.baseColorTexture.index >= 0) {
-            to.texture = addTexture(pbr.baseColorTexture.index, place);
-            coordinates = coordinatesOf(pbr.baseColorTexture, place);
+        const json* info = memberObject(description, "pbrMetallicRoughness");
+        if (info) info = memberObject(*info, "baseColorTexture");
+        // What older exporters write instead.
+        if (const json* glossiness = findExtension(description, "KHR_materials_pbrSpecularGlossiness")) {
+            numbersMember(*glossiness, "diffuseFactor", to.baseColour, place);
+            if (const json* diffuse = memberObject(*glossiness, "diffuseTexture")) info = diffuse;
+        }
+        if (info) {
+            to.texture = addTexture(integerMember(*info, "index", -1, place), place);
+            coordinates = coordinatesOf(*info, place);
         }
         coordinates_.push_back(coordinates);
         scene_.materials.push_back(std::move(to));
+    }
+
+    static const json* memberObject(const json& object, const char* name) {
+        const auto found = object.find(name);
+        return found != object.end() && found->is_object() ? &*found : nullptr;
     }
 
     float unitNumber(double value, const char* name, const std::string& place) const {
@@ -328,49 +292,43 @@ private:
         return float(value);
     }
 
-    TextureCoordinates coordinatesOf(const tinygltf::TextureInfo& info, const std::string& place) const {
-        TextureCoordinates result{.set = info.texCoord, .transform = {}};
-        const auto extension = info.extensions.find("KHR_texture_transform");
-        if (extension == info.extensions.end()) return result;
-        const tinygltf::Value& value = extension->second;
-        const auto number = [&](const tinygltf::Value& v) {
-            const float f = float(v.GetNumberAsDouble());
-            if (!v.IsNumber() || !usable(f)) file_.refuse(place, "KHR_texture_transform has a value that is no number");
-            return f;
-        };
-        const auto pair = [&](const char* name, glm::vec2& into) {
-            if (!value.Has(name)) return;
-            const tinygltf::Value& list = value.Get(name);
-            if (list.ArrayLen() != 2) file_.refuse(place, "KHR_texture_transform has a pair without two numbers");
-            into = {number(list.Get(0)), number(list.Get(1))};
-        };
-        pair("offset", result.transform.offset);
-        pair("scale", result.transform.scale);
-        if (value.Has("rotation")) result.transform.rotation = number(value.Get("rotation"));
-        if (value.Has("texCoord")) result.set = int(number(value.Get("texCoord")));
+    TextureCoordinates coordinatesOf(const json& info, const std::string& place) const {
+        TextureCoordinates result{.set = integerMember(info, "texCoord", 0, place), .transform = {}};
+        const json* transform = findExtension(info, "KHR_texture_transform");
+        if (!transform) return result;
+        numbersMember(*transform, "offset", result.transform.offset, place);
+        numbersMember(*transform, "scale", result.transform.scale, place);
+        if (const auto rotation = transform->find("rotation"); rotation != transform->end())
+            result.transform.rotation = numberOf(*rotation, "rotation", place);
+        result.set = integerMember(*transform, "texCoord", result.set, place);
         return result;
     }
 
     int addTexture(int index, const std::string& user) {
         const tinygltf::Texture& texture = at(model_.textures, index, "texture", user);
-        if (texture.source < 0) {
-            note(fmt::format("texture {} has no picture in a format that is read", index));
+        const std::string place = fmt::format("texture {}", index);
+        int source = texture.source;
+        if (const json* webp = findExtension(element("textures", size_t(index)), "EXT_texture_webp"))
+            source = integerMember(*webp, "source", source, place);
+        const auto neutral = [&] {
+            note(fmt::format("{} has no picture in a format that is read; a neutral one stands in", place));
             return -1;
-        }
-        const auto [known, isNew] =
-            textures_.try_emplace({texture.source, texture.sampler}, int(scene_.textures.size()));
-        if (!isNew) return known->second;
-        TextureImage image = file_.image(size_t(texture.source));
-        textureBytes_ += image.rgba.size();
+        };
+        if (source < 0) return neutral();
+        const auto known = textures_.find({source, texture.sampler});
+        if (known != textures_.end()) return known->second;
+        std::optional<TextureImage> image = file_.image(size_t(source));
+        if (!image) return textures_[{source, texture.sampler}] = neutral();
+        textureBytes_ += image->rgba.size();
         if (textureBytes_ > mostTextureBytes) file_.refuse(user, "brings the pictures to more than 4 GiB");
         if (texture.sampler >= 0) {
             const tinygltf::Sampler& sampler = at(model_.samplers, texture.sampler, "sampler", user);
-            image.wrapU = wrapOf(sampler.wrapS);
-            image.wrapV = wrapOf(sampler.wrapT);
-            image.magnifyNearest = sampler.magFilter == TINYGLTF_TEXTURE_FILTER_NEAREST;
+            image->wrapU = wrapOf(sampler.wrapS);
+            image->wrapV = wrapOf(sampler.wrapT);
+            image->magnifyNearest = sampler.magFilter == TINYGLTF_TEXTURE_FILTER_NEAREST;
         }
-        scene_.textures.push_back(std::move(image));
-        return known->second;
+        scene_.textures.push_back(std::move(*image));
+        return textures_[{source, texture.sampler}] = int(scene_.textures.size()) - 1;
     }
 
     static Wrap wrapOf(int mode) {
@@ -380,57 +338,107 @@ private:
 
     // --- meshes ------------------------------------------------------------------------------------------------------
 
+    // A primitive as the file describes it, and what it is called in messages.
+    struct Source {
+        const tinygltf::Primitive& primitive;
+        const json& description;
+        std::string place;
+        std::optional<DracoMesh> draco = {};
+        std::map<std::string, int> dracoAttributes = {}; // unique ids by semantic
+        int material = -1;
+
+        bool has(const std::string& name) const { return primitive.attributes.contains(name); }
+    };
+
     void addMesh(size_t index) {
         const tinygltf::Mesh& from = model_.meshes[index];
         Mesh& to = scene_.meshes.emplace_back();
         to.name = from.name;
         for (size_t i = 0; i < from.primitives.size(); ++i)
-            addPrimitive(from.primitives[i], to, fmt::format("mesh {} '{}' primitive {}", index, from.name, i));
+            addPrimitive(Source{from.primitives[i], element("meshes", index)["primitives"][i],
+                                fmt::format("mesh {} '{}' primitive {}", index, from.name, i)},
+                         to);
+        for (const Primitive& primitive : to.primitives)
+            if (primitive.morphTargets != to.primitives[0].morphTargets)
+                file_.refuse(fmt::format("mesh {} '{}'", index, from.name),
+                             "has primitives with different numbers of morph targets");
     }
 
-    void addPrimitive(const tinygltf::Primitive& from, Mesh& mesh, const std::string& place) {
-        if (from.mode < TINYGLTF_MODE_POINTS || from.mode > TINYGLTF_MODE_TRIANGLE_FAN)
-            file_.refuse(place, fmt::format("has mode {}; expected 0..6", from.mode));
-        if (from.mode < TINYGLTF_MODE_TRIANGLES) return note(place + ": points and lines are not drawn");
-        if (!from.attributes.contains("POSITION")) return note(place + ": has no positions and is not drawn");
-        if (!from.targets.empty()) note("morphing is not read: meshes with morph targets keep their base shape");
-        if (from.attributes.contains("COLOR_0")) note("vertex colours are not read");
-        if (from.material >= 0) at(scene_.materials, from.material, "material", place);
-
-        const int positionAccessor = from.attributes.at("POSITION");
-        const size_t vertexCount = at(model_.accessors, positionAccessor, "accessor", place).count;
-        std::vector<uint32_t> indices;
-        if (from.indices >= 0) {
-            indices = readIndices(from.indices, vertexCount, place);
-        } else {
-            elements(positionAccessor, accessorPlace(positionAccessor, place)); // its count is real
-            indices.resize(vertexCount);
-            std::iota(indices.begin(), indices.end(), 0u);
-        }
-        indices = triangleList(indices, from.mode);
-        if (indices.empty()) return note(place + ": has no whole triangle and is not drawn");
+    void addPrimitive(Source from, Mesh& mesh) {
+        const std::string& place = from.place;
+        const int mode = from.primitive.mode;
+        if (mode < TINYGLTF_MODE_POINTS || mode > TINYGLTF_MODE_TRIANGLE_FAN)
+            file_.refuse(place, fmt::format("has mode {}; expected 0..6", mode));
+        if (mode < TINYGLTF_MODE_TRIANGLES) return note(place + ": points and lines are not drawn");
+        if (!from.has("POSITION")) return note(place + ": has no positions and is not drawn");
+        from.material = materialOf(from);
+        if (from.material >= 0) at(model_.materials, from.material, "material", place);
+        openDraco(from);
 
         Primitive to;
         to.material = from.material >= 0 ? from.material : int(model_.materials.size());
-        const bool flat = !from.attributes.contains("NORMAL");
-        const VertexRange range = flat ? addFlatVertices(from, indices, place) : addVertices(from, place);
+        const VertexRange range = addVertices(from);
+        std::vector<uint32_t> indices;
+        if (from.draco) {
+            indices = from.draco->indices();
+        } else if (from.primitive.indices >= 0) {
+            indices = accessors_.indices(from.primitive.indices, range.count, place);
+        } else {
+            indices.resize(range.count);
+            std::iota(indices.begin(), indices.end(), 0u);
+        }
+        indices = triangleList(std::move(indices), mode);
+        if (indices.empty()) return note(place + ": has no whole triangle and is not drawn");
         to.firstVertex = range.first;
         to.vertexCount = range.count;
+        to.influenceSets = range.influenceSets;
+        to.firstInfluence = range.firstInfluence;
+        to.morphTargets = range.morphTargets;
+        to.firstDelta = range.firstDelta;
         to.firstIndex = uint32_t(scene_.indices.size());
         to.indexCount = uint32_t(indices.size());
         if (indices.size() > mostIndices - scene_.indices.size()) file_.refuse(place, "brings too many indices");
         scene_.indices.insert(scene_.indices.end(), indices.begin(), indices.end());
-        for (const uint32_t i : indices) to.bounds.add(scene_.positions[range.first + i]);
-        mendNormals(range, indices);
-        mesh.primitives.push_back(to);
+        measure(to);
+        mesh.primitives.push_back(std::move(to));
     }
 
-    static std::vector<uint32_t> triangleList(const std::vector<uint32_t>& indices, int mode) {
-        std::vector<uint32_t> list;
+    int materialOf(const Source& from) const {
+        const json* variants =
+            scene_.chosenVariant < 0 ? nullptr : findExtension(from.description, "KHR_materials_variants");
+        const auto mappings = variants ? variants->find("mappings") : json::const_iterator();
+        if (variants && mappings != variants->end() && mappings->is_array())
+            for (const json& mapping : *mappings) {
+                const json list = mapping.is_object() ? mapping.value("variants", json()) : json();
+                if (list.is_array() && std::find(list.begin(), list.end(), json(scene_.chosenVariant)) != list.end())
+                    return integerMember(mapping, "material", -1, from.place);
+            }
+        return from.primitive.material;
+    }
+
+    void openDraco(Source& from) {
+        const json* extension = findExtension(from.description, "KHR_draco_mesh_compression");
+        if (!extension) return;
+        const std::string place = from.place + " Draco";
+        const int view = integerMember(*extension, "bufferView", -1, place);
+        if (view < 0) file_.refuse(place, "has no bufferView");
+        if (const json* attributes = memberObject(*extension, "attributes"))
+            for (const auto& [name, id] : attributes->items())
+                from.dracoAttributes[name] = integerMember(*attributes, name.c_str(), 0, place);
+        if (!from.dracoAttributes.contains("POSITION")) file_.refuse(place, "has no POSITION");
+        from.draco.emplace(file_, file_.bufferView(size_t(view), place), place);
+        if (from.primitive.mode != TINYGLTF_MODE_TRIANGLES)
+            note(from.place + ": Draco's triangles stand in for its strip");
+    }
+
+    static std::vector<uint32_t> triangleList(std::vector<uint32_t> indices, int mode) {
         const size_t n = indices.size();
         if (mode == TINYGLTF_MODE_TRIANGLES) {
-            list.assign(indices.begin(), indices.begin() + std::ptrdiff_t(n - n % 3));
-        } else if (mode == TINYGLTF_MODE_TRIANGLE_STRIP) { // every other triangle is turned to keep the winding
+            indices.resize(n - n % 3);
+            return indices;
+        }
+        std::vector<uint32_t> list;
+        if (mode == TINYGLTF_MODE_TRIANGLE_STRIP) { // every other triangle is turned to keep the winding
             for (size_t i = 2; i < n; ++i)
                 list.insert(list.end(), {indices[i - 2], indices[i - 1 + i % 2], indices[i - i % 2]});
         } else {
@@ -439,107 +447,201 @@ private:
         return list;
     }
 
-    struct Streams {
-        std::vector<float> positions, normals, uvs; // uvs may be empty
-    };
-    Streams readStreams(const tinygltf::Primitive& primitive, const std::string& place) {
-        Streams streams;
-        streams.positions = readFloats(primitive.attributes.at("POSITION"), {3}, place + " POSITION");
-        const auto normal = primitive.attributes.find("NORMAL");
-        if (normal != primitive.attributes.end()) streams.normals = readFloats(normal->second, {3}, place + " NORMAL");
-        const int uv = uvAccessor(primitive);
-        if (uv >= 0) {
-            streams.uvs = readFloats(uv, {2}, place + " TEXCOORD");
-            const TextureTransform& transform = coordinates_[size_t(primitive.material)].transform;
-            for (size_t i = 0; i < streams.uvs.size(); i += 2) {
-                const glm::vec2 moved = transform({streams.uvs[i], streams.uvs[i + 1]});
-                streams.uvs[i] = moved.x;
-                streams.uvs[i + 1] = moved.y;
-            }
+    // The values of an attribute of `count` vertices (0: any), decompressed where they are compressed.
+    std::vector<float> attribute(const Source& from, const std::string& name, std::initializer_list<size_t> components,
+                                 size_t count) {
+        const std::string place = from.place + " " + name;
+        const int accessor = from.primitive.attributes.at(name);
+        std::vector<float> values;
+        size_t width = *components.begin();
+        if (const auto id = from.dracoAttributes.find(name); id != from.dracoAttributes.end()) {
+            const bool normalised = at(model_.accessors, accessor, "accessor", place).normalized;
+            width = from.draco->components(uint32_t(id->second), place);
+            if (std::find(components.begin(), components.end(), width) == components.end())
+                file_.refuse(place, fmt::format("has {} components; expected {}", width, *components.begin()));
+            values = from.draco->floats(uint32_t(id->second), normalised, place);
+            if (!std::all_of(values.begin(), values.end(), usableNumber))
+                file_.refuse(place, "has a value that is not a usable number");
+        } else {
+            const size_t stated = accessors_.count(accessor, place);
+            values = accessors_.floats(accessor, components, place);
+            width = stated > 0 ? values.size() / stated : width;
         }
-        const size_t count = streams.positions.size() / 3;
-        if ((!streams.normals.empty() && streams.normals.size() != 3 * count) ||
-            (!streams.uvs.empty() && streams.uvs.size() != 2 * count))
-            file_.refuse(place, "has attributes of different counts");
-        return streams;
+        if (count > 0 && values.size() != count * width)
+            file_.refuse(from.place, fmt::format("has attributes of different counts: {} {} and {} positions",
+                                                 values.size() / width, name, count));
+        return values;
     }
 
-    int uvAccessor(const tinygltf::Primitive& primitive) const {
-        if (primitive.material < 0) return -1;
-        const auto found =
-            primitive.attributes.find(fmt::format("TEXCOORD_{}", coordinates_[size_t(primitive.material)].set));
-        return found == primitive.attributes.end() ? -1 : found->second;
-    }
-
-    void append(const Streams& streams, size_t i) {
-        const float* p = &streams.positions[3 * i];
-        scene_.positions.emplace_back(p[0], p[1], p[2]);
-        scene_.uvs.push_back(streams.uvs.empty() ? glm::vec2(0)
-                                                 : glm::vec2(streams.uvs[2 * i], streams.uvs[2 * i + 1]));
-    }
-
-    VertexRange beginVertices(size_t count, const std::string& place) const {
-        if (count > mostVertices - scene_.positions.size()) file_.refuse(place, "brings too many vertices");
-        return {uint32_t(scene_.positions.size()), uint32_t(count)};
+    // The accessor of the texture coordinates that the material looks at.
+    std::optional<std::string> uvAttribute(const Source& from) const {
+        if (from.material < 0 || coordinates_[size_t(from.material)].set < 0) return std::nullopt;
+        std::string name = fmt::format("TEXCOORD_{}", coordinates_[size_t(from.material)].set);
+        return from.has(name) ? std::optional(std::move(name)) : std::nullopt;
     }
 
     // Primitives with the same attributes share their vertices.
-    VertexRange addVertices(const tinygltf::Primitive& primitive, const std::string& place) {
-        const int uv = uvAccessor(primitive);
-        const bool moved = uv >= 0 && coordinates_[size_t(primitive.material)].transform != TextureTransform{};
-        const auto [known, isNew] =
-            vertices_.try_emplace({primitive.attributes.at("POSITION"), primitive.attributes.at("NORMAL"), uv,
-                                   moved ? primitive.material : -1});
-        if (!isNew) return known->second;
-        const Streams streams = readStreams(primitive, place);
-        known->second = beginVertices(streams.positions.size() / 3, place);
-        for (size_t i = 0; i < known->second.count; ++i) {
-            append(streams, i);
-            const float* n = &streams.normals[3 * i];
-            const glm::vec3 normal(n[0], n[1], n[2]);
-            const float length = glm::length(normal);
-            scene_.normals.push_back(length > 1e-12f ? normal / length : glm::vec3(0));
-        }
-        return known->second;
-    }
+    VertexRange addVertices(const Source& from) {
+        const std::optional<std::string> uv = uvAttribute(from);
+        const auto accessorOf = [&](const std::string& name) {
+            const auto found = from.primitive.attributes.find(name);
+            return found == from.primitive.attributes.end() ? -1 : found->second;
+        };
+        const bool moved = uv && coordinates_[size_t(from.material)].transform != TextureTransform{};
+        std::vector<int> key{uv ? accessorOf(*uv) : -1, moved ? from.material : -1};
+        for (const char* name : {"POSITION", "NORMAL", "COLOR_0", "JOINTS_0", "WEIGHTS_0", "JOINTS_1", "WEIGHTS_1"})
+            key.push_back(accessorOf(name));
+        for (const auto& target : from.primitive.targets)
+            for (const char* name : {"POSITION", "NORMAL"}) key.push_back(target.contains(name) ? target.at(name) : -1);
+        if (!from.draco)
+            if (const auto known = vertices_.find(key); known != vertices_.end()) return known->second;
 
-    // Without normals in the file triangles are flat, so each has vertices of its own; `indices` then just counts.
-    VertexRange addFlatVertices(const tinygltf::Primitive& primitive, std::vector<uint32_t>& indices,
-                                const std::string& place) {
-        const Streams streams = readStreams(primitive, place);
-        const VertexRange range = beginVertices(indices.size(), place);
-        for (uint32_t& index : indices) {
-            append(streams, index);
-            scene_.normals.emplace_back(0);
-        }
-        std::iota(indices.begin(), indices.end(), 0u);
+        std::vector<float> values = attribute(from, "POSITION", {3}, 0);
+        VertexRange range{.first = uint32_t(scene_.positions.size()), .count = uint32_t(values.size() / 3)};
+        const size_t count = values.size() / 3;
+        if (count > mostVertices - scene_.positions.size()) file_.refuse(from.place, "brings too many vertices");
+        for (size_t i = 0; i < count; ++i) scene_.positions.push_back(glm::make_vec3(&values[3 * i]));
+        addNormals(from, count);
+        addTextureCoordinates(from, uv, count);
+        addColours(from, range);
+        addInfluences(from, range);
+        addMorphTargets(from, range);
+        if (!from.draco) vertices_[std::move(key)] = range;
         return range;
     }
 
-    // Gives vertices without a normal the one of a triangle that they belong to.
-    void mendNormals(const VertexRange& range, const std::vector<uint32_t>& indices) {
-        const auto isMissing = [](const glm::vec3& normal) { return normal == glm::vec3(0); };
-        for (size_t i = 0; i + 2 < indices.size(); i += 3) {
-            const std::array<size_t, 3> corner{range.first + indices[i], range.first + indices[i + 1],
-                                               range.first + indices[i + 2]};
-            if (std::none_of(corner.begin(), corner.end(), [&](size_t v) { return isMissing(scene_.normals[v]); }))
-                continue;
-            const glm::dvec3 a(scene_.positions[corner[0]]), b(scene_.positions[corner[1]]),
-                c(scene_.positions[corner[2]]);
-            const glm::dvec3 normal = glm::cross(b - a, c - a);
-            const double length = glm::length(normal);
-            if (!(length > 0)) continue;
-            for (const size_t v : corner)
-                if (isMissing(scene_.normals[v])) scene_.normals[v] = glm::vec3(normal / length);
+    // Unit vectors; zero where the file has none, which means flat.
+    void addNormals(const Source& from, size_t count) {
+        if (!from.has("NORMAL")) return scene_.normals.resize(scene_.normals.size() + count, glm::vec3(0));
+        const std::vector<float> values = attribute(from, "NORMAL", {3}, count);
+        for (size_t i = 0; i < count; ++i) {
+            const glm::vec3 normal = glm::make_vec3(&values[3 * i]);
+            const float length = glm::length(normal);
+            scene_.normals.push_back(length > 1e-12f && std::isfinite(length) ? normal / length : glm::vec3(0));
         }
     }
 
-    void finishMaterialsAndNormals() {
-        // The material of primitives without one, which also keeps the list from being empty.
-        scene_.materials.push_back({.name = "default"});
-        // Vertices of degenerate triangles only: never seen, but a unit vector is promised.
-        for (glm::vec3& normal : scene_.normals)
-            if (normal == glm::vec3(0)) normal = {0, 1, 0};
+    void addTextureCoordinates(const Source& from, const std::optional<std::string>& uv, size_t count) {
+        if (!uv) return scene_.uvs.resize(scene_.uvs.size() + count, glm::vec2(0));
+        const std::vector<float> values = attribute(from, *uv, {2}, count);
+        const TextureTransform& transform = coordinates_[size_t(from.material)].transform;
+        for (size_t i = 0; i < count; ++i) scene_.uvs.push_back(transform(glm::make_vec2(&values[2 * i])));
+    }
+
+    void addColours(const Source& from, const VertexRange& range) {
+        constexpr glm::u16vec4 white(65535);
+        if (from.has("COLOR_0")) {
+            const std::vector<float> values = attribute(from, "COLOR_0", {4, 3}, range.count);
+            const size_t width = values.size() / range.count;
+            scene_.colours.resize(range.first, white);
+            for (size_t i = 0; i < range.count; ++i) {
+                const float* c = &values[width * i];
+                const glm::vec4 colour(c[0], c[1], c[2], width == 4 ? c[3] : 1.0f);
+                scene_.colours.emplace_back(glm::clamp(colour, 0.0f, 1.0f) * 65535.0f + 0.5f);
+            }
+        } else if (!scene_.colours.empty()) {
+            scene_.colours.resize(range.first + range.count, white);
+        }
+    }
+
+    void addInfluences(const Source& from, VertexRange& range) {
+        uint32_t sets = 0;
+        while (from.has(fmt::format("JOINTS_{}", sets)) && from.has(fmt::format("WEIGHTS_{}", sets))) ++sets;
+        if (sets > mostInfluenceSets) note(from.place + ": more than eight joints a vertex; the first eight are read");
+        sets = std::min<uint32_t>(sets, mostInfluenceSets);
+        range.influenceSets = sets;
+        range.firstInfluence = uint32_t(scene_.influences.size());
+        scene_.influences.resize(scene_.influences.size() + size_t(sets) * range.count);
+        for (uint32_t set = 0; set < sets; ++set) {
+            const std::vector<float> joints = attribute(from, fmt::format("JOINTS_{}", set), {4}, range.count);
+            const std::vector<float> weights = attribute(from, fmt::format("WEIGHTS_{}", set), {4}, range.count);
+            for (size_t v = 0; v < range.count; ++v) {
+                Influences& to = scene_.influences[range.firstInfluence + size_t(set) * range.count + v];
+                for (int k = 0; k < 4; ++k) {
+                    const float joint = joints[4 * v + size_t(k)];
+                    to.weights[k] = std::max(weights[4 * v + size_t(k)], 0.0f);
+                    if (!(joint >= 0 && joint < float(mostJoints)))
+                        file_.refuse(from.place, fmt::format("vertex {} has joint {}", v, joint));
+                    to.joints[k] = to.weights[k] > 0 ? uint16_t(joint) : uint16_t(0);
+                }
+            }
+        }
+        normaliseWeights(from, range);
+    }
+
+    void normaliseWeights(const Source& from, const VertexRange& range) {
+        bool any = false;
+        for (size_t v = 0; v < range.count && range.influenceSets > 0; ++v) {
+            const auto set = [&](uint32_t s) -> Influences& {
+                return scene_.influences[range.firstInfluence + size_t(s) * range.count + v];
+            };
+            float sum = 0;
+            for (uint32_t s = 0; s < range.influenceSets; ++s)
+                for (int k = 0; k < 4; ++k) sum += set(s).weights[k];
+            if (sum > 0)
+                for (uint32_t s = 0; s < range.influenceSets; ++s) set(s).weights /= sum;
+            else
+                set(0).weights.x = 1;
+            any = any || !(sum > 0);
+        }
+        if (any) note(from.place + ": vertices without weights follow the first joint");
+    }
+
+    void addMorphTargets(const Source& from, VertexRange& range) {
+        const auto& targets = from.primitive.targets;
+        if (targets.size() > mostTargets || targets.size() * range.count > mostVertices - scene_.morphDeltas.size())
+            file_.refuse(from.place, "brings too many morph targets");
+        range.morphTargets = uint32_t(targets.size());
+        range.firstDelta = uint32_t(scene_.morphDeltas.size());
+        scene_.morphDeltas.resize(scene_.morphDeltas.size() + targets.size() * range.count);
+        for (size_t t = 0; t < targets.size(); ++t) {
+            const auto read = [&](const char* name, glm::vec3 MorphDelta::*member) {
+                const auto found = targets[t].find(name);
+                if (found == targets[t].end()) return;
+                const std::string place = fmt::format("{} target {} {}", from.place, t, name);
+                const std::vector<float> values = accessors_.floats(found->second, {3}, place);
+                if (values.size() != size_t(3) * range.count)
+                    file_.refuse(place, fmt::format("has {} values for {} vertices", values.size() / 3, range.count));
+                for (size_t v = 0; v < range.count; ++v)
+                    scene_.morphDeltas[range.firstDelta + t * range.count + v].*member = glm::make_vec3(&values[3 * v]);
+            };
+            read("POSITION", &MorphDelta::position);
+            if (from.has("NORMAL")) read("NORMAL", &MorphDelta::normal); // what is flat stays flat
+        }
+    }
+
+    // The boxes of a primitive: of its triangles at rest, of what each joint pulls on, of how far each target moves.
+    void measure(Primitive& primitive) {
+        std::map<uint32_t, Bounds> byJoint;
+        std::vector<bool> seen(primitive.vertexCount);
+        primitive.morphBounds.resize(primitive.morphTargets);
+        for (uint32_t i = 0; i < primitive.indexCount; ++i) {
+            const uint32_t v = scene_.indices[primitive.firstIndex + i];
+            if (seen[v]) continue;
+            seen[v] = true;
+            const glm::vec3 p = scene_.positions[primitive.firstVertex + v];
+            primitive.bounds.add(p);
+            for (uint32_t t = 0; t < primitive.morphTargets; ++t)
+                primitive.morphBounds[t].add(
+                    scene_.morphDeltas[primitive.firstDelta + size_t(t) * primitive.vertexCount + v].position);
+            for (uint32_t s = 0; s < primitive.influenceSets; ++s) {
+                const Influences& pull =
+                    scene_.influences[primitive.firstInfluence + size_t(s) * primitive.vertexCount + v];
+                for (int k = 0; k < 4; ++k)
+                    if (pull.weights[k] > 0) byJoint[pull.joints[k]].add(p);
+            }
+        }
+        for (const auto& [joint, bounds] : byJoint) primitive.jointBounds.push_back({joint, bounds});
+    }
+
+    void findClosedSurfaces() {
+        for (size_t m = 0; m < scene_.meshes.size(); ++m) {
+            report("finding closed surfaces", 0.8 + 0.2 * double(m) / double(scene_.meshes.size()));
+            for (Primitive& primitive : scene_.meshes[m].primitives)
+                primitive.closed = primitive.influenceSets == 0 && primitive.morphTargets == 0 &&
+                                   !scene_.materials[size_t(primitive.material)].masked &&
+                                   isClosedSurface(scene_, primitive);
+        }
     }
 
     // --- nodes -------------------------------------------------------------------------------------------------------
@@ -578,16 +680,58 @@ private:
             node.visible = visible[i];
             scene_.nodes.push_back(std::move(node));
         }
-        for (size_t i = 0; i < count; ++i)
+        for (size_t i = 0; i < count; ++i) {
             if (visible[i]) addCameraAndLight(i);
+            addInstances(i);
+        }
     }
 
-    // Those below the default scene, the first one, or all if there are no scenes.
+    // EXT_mesh_gpu_instancing: the node's mesh at several places below it, each a node of its own.
+    void addInstances(size_t index) {
+        const json* extension = findExtension(element("nodes", index), "EXT_mesh_gpu_instancing");
+        const json* attributes = extension ? memberObject(*extension, "attributes") : nullptr;
+        if (!attributes || scene_.nodes[size_t(nodes_[index])].mesh < 0) return;
+        const std::string place = nodePlace(index) + " instances";
+        size_t count = 0;
+        const auto read = [&](const char* name, size_t components) {
+            const int accessor = integerMember(*attributes, name, -1, place);
+            if (accessor < 0) return std::vector<float>();
+            std::vector<float> values = accessors_.floats(accessor, {components}, place);
+            if (count > 0 && values.size() / components != count)
+                file_.refuse(place, "have attributes of different counts");
+            count = values.size() / components;
+            return values;
+        };
+        const std::vector<float> translations = read("TRANSLATION", 3), rotations = read("ROTATION", 4),
+                                 scales = read("SCALE", 3);
+        if (count > mostNodes - std::min(mostNodes, scene_.nodes.size())) file_.refuse(place, "are too many");
+        const int parent = nodes_[index];
+        Node instance;
+        instance.parent = parent;
+        instance.visible = scene_.nodes[size_t(parent)].visible;
+        instance.mesh =
+            std::exchange(scene_.nodes[size_t(parent)].mesh, count > 0 ? -1 : scene_.nodes[size_t(parent)].mesh);
+        if (std::exchange(scene_.nodes[size_t(parent)].skin, -1) >= 0) note(place + ": instances are not skinned");
+        for (size_t i = 0; i < count; ++i) {
+            if (!translations.empty()) instance.translation = glm::make_vec3(&translations[3 * i]);
+            if (!scales.empty()) instance.scale = glm::make_vec3(&scales[3 * i]);
+            if (!rotations.empty()) instance.rotation = unitQuaternion(&rotations[4 * i], place);
+            instance.firstWeight = scene_.nodes[size_t(parent)].firstWeight;
+            scene_.nodes.push_back(instance);
+        }
+    }
+
+    glm::quat unitQuaternion(const float* xyzw, const std::string& place) const {
+        const glm::quat rotation(xyzw[3], xyzw[0], xyzw[1], xyzw[2]);
+        if (!(glm::length(rotation) > 1e-6f)) file_.refuse(place, "rotation has no length; expected a unit quaternion");
+        return glm::normalize(rotation);
+    }
+
+    // Those below the chosen scene, or all if there are no scenes.
     std::vector<bool> visibleNodes() const {
         std::vector<bool> visible(model_.nodes.size(), model_.scenes.empty());
         if (model_.scenes.empty()) return visible;
-        const tinygltf::Scene& chosen =
-            at(model_.scenes, model_.defaultScene < 0 ? 0 : model_.defaultScene, "scene", "scene");
+        const tinygltf::Scene& chosen = at(model_.scenes, scene_.chosenScene, "scene", "scene");
         std::vector<int> open(chosen.nodes);
         while (!open.empty()) {
             const int node = open.back();
@@ -610,7 +754,7 @@ private:
             std::array<float, 16> values{};
             for (size_t i = 0; i < count; ++i) {
                 values[i] = float(list[i]);
-                if (!usable(values[i])) file_.refuse(place, fmt::format("{} has a value of {}", name, list[i]));
+                if (!usableNumber(values[i])) file_.refuse(place, fmt::format("{} has a value of {}", name, list[i]));
             }
             return values;
         };
@@ -625,18 +769,73 @@ private:
         if (!from.translation.empty())
             to.translation = glm::make_vec3(numbers(from.translation, 3, "translation").data());
         if (!from.scale.empty()) to.scale = glm::make_vec3(numbers(from.scale, 3, "scale").data());
-        if (!from.rotation.empty()) {
-            const std::array<float, 16> q = numbers(from.rotation, 4, "rotation");
-            const glm::quat rotation(q[3], q[0], q[1], q[2]);
-            if (!(glm::length(rotation) > 1e-6f))
-                file_.refuse(place, "rotation has no length; expected a unit quaternion");
-            to.rotation = glm::normalize(rotation);
-        }
+        if (!from.rotation.empty()) to.rotation = unitQuaternion(numbers(from.rotation, 4, "rotation").data(), place);
         if (from.mesh >= 0) {
-            at(scene_.meshes, from.mesh, "mesh", place);
+            const Mesh& mesh = at(scene_.meshes, from.mesh, "mesh", place);
             to.mesh = from.mesh;
+            to.firstWeight = uint32_t(scene_.restWeights.size());
+            addRestWeights(mesh, from, place);
+        }
+        if (from.skin >= 0 && from.mesh >= 0) {
+            at(model_.skins, from.skin, "skin", place);
+            to.skin = from.skin;
         }
         return to;
+    }
+
+    static uint32_t targetsOf(const Mesh& mesh) {
+        return mesh.primitives.empty() ? 0 : mesh.primitives[0].morphTargets;
+    }
+
+    // The node's own weights, or the mesh's, or none of any target.
+    void addRestWeights(const Mesh& mesh, const tinygltf::Node& from, const std::string& place) {
+        const std::vector<double>& weights =
+            from.weights.empty() ? model_.meshes[size_t(from.mesh)].weights : from.weights;
+        for (uint32_t t = 0; t < targetsOf(mesh); ++t) {
+            scene_.restWeights.push_back(t < weights.size() ? float(weights[t]) : 0.0f);
+            if (!usableNumber(scene_.restWeights.back()))
+                file_.refuse(place, "has a weight that is not a usable number");
+        }
+    }
+
+    // --- skins -------------------------------------------------------------------------------------------------------
+
+    void addSkin(size_t index) {
+        const tinygltf::Skin& from = model_.skins[index];
+        const std::string place = fmt::format("skin {} '{}'", index, from.name);
+        Skin to;
+        to.name = from.name;
+        to.firstMatrix =
+            scene_.skins.empty() ? 0 : scene_.skins.back().firstMatrix + uint32_t(scene_.skins.back().joints.size());
+        if (from.joints.empty() || from.joints.size() > mostJoints)
+            file_.refuse(place, fmt::format("has {} joints; expected 1..{}", from.joints.size(), mostJoints));
+        for (const int joint : from.joints) {
+            at(model_.nodes, joint, "node", place);
+            to.joints.push_back(nodes_[size_t(joint)]);
+        }
+        to.jointFromMesh.resize(to.joints.size(), glm::mat4(1));
+        if (from.inverseBindMatrices >= 0) {
+            const std::vector<float> values = accessors_.floats(from.inverseBindMatrices, {16}, place);
+            if (values.size() < 16 * to.joints.size())
+                file_.refuse(place, fmt::format("has {} inverse bind matrices for {} joints", values.size() / 16,
+                                                to.joints.size()));
+            for (size_t i = 0; i < to.joints.size(); ++i) {
+                to.jointFromMesh[i] = glm::make_mat4(&values[16 * i]);
+                for (int column = 0; column < 4; ++column) to.jointFromMesh[i][column].w = column == 3 ? 1.0f : 0.0f;
+            }
+        }
+        scene_.skins.push_back(std::move(to));
+    }
+
+    void checkSkin(size_t index) const {
+        const Node& node = scene_.nodes[size_t(nodes_[index])];
+        if (node.skin < 0) return;
+        for (const Primitive& primitive : scene_.meshes[size_t(node.mesh)].primitives)
+            for (const Primitive::JointBounds& pulled : primitive.jointBounds)
+                if (pulled.joint >= scene_.skins[size_t(node.skin)].joints.size())
+                    file_.refuse(nodePlace(index),
+                                 fmt::format("has a mesh with joint {} and a skin of {} joints", pulled.joint,
+                                             scene_.skins[size_t(node.skin)].joints.size()));
     }
 
     void addCameraAndLight(size_t index) {
@@ -644,11 +843,8 @@ private:
         const std::string place = nodePlace(index);
         if (node.camera >= 0) addCamera(at(model_.cameras, node.camera, "camera", place), index);
         // Asked of the JSON, since versions of tinygltf differ in where they keep it.
-        const json extensions = file_.document()["nodes"][index].value("extensions", json());
-        const json reference = extensions.is_object() ? extensions.value("KHR_lights_punctual", json()) : json();
-        if (!reference.is_object()) return;
-        const json light = reference.value("light", json());
-        addLight(at(model_.lights, light.is_number_integer() ? light.get<int>() : -1, "light", place), index);
+        if (const json* reference = findExtension(element("nodes", index), "KHR_lights_punctual"))
+            addLight(at(model_.lights, integerMember(*reference, "light", -1, place), "light", place), index);
     }
 
     void addCamera(const tinygltf::Camera& from, size_t node) {
@@ -663,7 +859,7 @@ private:
                              fmt::format("camera has a yfov of {}; expected radians below pi", from.perspective.yfov));
         } else if (from.type == "orthographic") {
             to.halfHeight = float(std::abs(from.orthographic.ymag));
-            if (!(to.halfHeight > 0 && usable(to.halfHeight)))
+            if (!(to.halfHeight > 0 && usableNumber(to.halfHeight)))
                 file_.refuse(place, fmt::format("camera has a ymag of {}; expected metres", from.orthographic.ymag));
             note(fmt::format("camera '{}' is orthographic; a perspective one frames the same", to.name));
         } else {
@@ -701,7 +897,7 @@ private:
             size = glm::vec2(float(value.GetNumberAsDouble()));
         else if (value.ArrayLen() == 2 && value.Get(0).IsNumber() && value.Get(1).IsNumber())
             size = {float(value.Get(0).GetNumberAsDouble()), float(value.Get(1).GetNumberAsDouble())};
-        if (!(size.x > 0 && size.y > 0 && usable(size.x) && usable(size.y)))
+        if (!(size.x > 0 && size.y > 0 && usableNumber(size.x) && usableNumber(size.y)))
             file_.refuse(place, "light has an extra 'size' that is not one or two positive numbers");
         return size;
     }
@@ -711,7 +907,7 @@ private:
     void addAnimation(size_t index) {
         const tinygltf::Animation& from = model_.animations[index];
         Animation to;
-        to.name = from.name;
+        to.name = from.name.empty() ? fmt::format("animation {}", index) : oneLine(from.name);
         for (size_t i = 0; i < from.channels.size(); ++i)
             addChannel(from, from.channels[i], to, fmt::format("animation {} '{}' channel {}", index, from.name, i));
         std::stable_sort(to.channels.begin(), to.channels.end(),
@@ -722,19 +918,27 @@ private:
 
     void addChannel(const tinygltf::Animation& animation, const tinygltf::AnimationChannel& from, Animation& into,
                     const std::string& place) {
+        using Path = AnimationChannel::Path;
         if (from.target_node < 0) return note(place + ": moves no node");
         at(model_.nodes, from.target_node, "node", place);
         AnimationChannel to;
         to.node = nodes_[size_t(from.target_node)];
-        if (from.target_path == "translation")
-            to.path = AnimationChannel::Path::Translation;
-        else if (from.target_path == "rotation")
-            to.path = AnimationChannel::Path::Rotation;
-        else if (from.target_path == "scale")
-            to.path = AnimationChannel::Path::Scale;
-        else
+        const Node& node = scene_.nodes[size_t(to.node)];
+        if (from.target_path == "translation") {
+            to.path = Path::Translation;
+        } else if (from.target_path == "rotation") {
+            to.path = Path::Rotation;
+            to.width = 4;
+        } else if (from.target_path == "scale") {
+            to.path = Path::Scale;
+        } else if (from.target_path == "weights") {
+            to.path = Path::Weights;
+            to.width = node.mesh < 0 ? 0 : targetsOf(scene_.meshes[size_t(node.mesh)]);
+            if (to.width == 0) return note(place + ": weighs morph targets that are not there");
+        } else {
             return note(fmt::format("animation of '{}' is not read", from.target_path));
-        if (scene_.nodes[size_t(to.node)].matrix) return note(place + ": moves a node that is given as a matrix");
+        }
+        if (to.path != Path::Weights && node.matrix) return note(place + ": moves a node that is given as a matrix");
 
         const tinygltf::AnimationSampler& sampler = at(animation.samplers, from.sampler, "sampler", place);
         if (sampler.interpolation == "STEP")
@@ -744,52 +948,67 @@ private:
         else if (sampler.interpolation != "LINEAR")
             file_.refuse(place, fmt::format("interpolation is '{}'; expected STEP, LINEAR or CUBICSPLINE",
                                             sampler.interpolation));
-        to.times = readFloats(sampler.input, {1}, place + " input");
-        for (size_t i = 0; i < to.times.size(); ++i)
-            if (to.times[i] < 0 || (i > 0 && to.times[i] <= to.times[i - 1]))
-                file_.refuse(place,
-                             fmt::format("time {} is {} s; expected increasing times from 0 on", i, to.times[i]));
-
-        const size_t components = to.path == AnimationChannel::Path::Rotation ? 4 : 3;
-        const std::vector<float> values = readFloats(sampler.output, {components}, place + " output");
-        const size_t perTime = to.interpolation == AnimationChannel::Interpolation::CubicSpline ? 3 : 1;
-        if (values.size() != components * perTime * to.times.size())
-            file_.refuse(place, fmt::format("has {} values for {} times; expected {}", values.size() / components,
-                                            to.times.size(), perTime * to.times.size()));
-        keyCount_ += values.size() / components;
+        const std::vector<float> times = accessors_.floats(sampler.input, {1}, place + " input");
+        const size_t components = to.path == Path::Weights ? 1 : to.width;
+        const std::vector<float> values = accessors_.floats(sampler.output, {components}, place + " output");
+        const size_t perTime =
+            to.width * (to.interpolation == AnimationChannel::Interpolation::CubicSpline ? size_t(3) : size_t(1));
+        if (values.size() != perTime * times.size())
+            file_.refuse(place, fmt::format("has {} numbers for {} times; expected {}", values.size(), times.size(),
+                                            perTime * times.size()));
+        keyCount_ += values.size();
         if (keyCount_ > mostKeys) file_.refuse(place, "brings too many keys");
-        for (size_t i = 0; i < values.size(); i += components)
-            to.values.emplace_back(values[i], values[i + 1], values[i + 2], components == 4 ? values[i + 3] : 0.0f);
-        into.channels.push_back(std::move(to));
+        // Exporters repeat times, and stored rounding makes some run back: such keys are never reached.
+        for (size_t i = 0; i < times.size(); ++i) {
+            if (times[i] < 0 || (!to.times.empty() && times[i] <= to.times.back())) {
+                note(fmt::format("animation '{}' has keys whose time does not increase from 0 on; they are left out",
+                                 into.name));
+                continue;
+            }
+            to.times.push_back(times[i]);
+            to.values.insert(to.values.end(), values.begin() + std::ptrdiff_t(perTime * i),
+                             values.begin() + std::ptrdiff_t(perTime * (i + 1)));
+        }
+        if (!to.times.empty()) into.channels.push_back(std::move(to));
     }
 
     // Every number was fine, but their products may not be.
     void checkExtent() const {
         Pose pose;
-        evaluatePose(scene_, 0, pose);
+        evaluatePose(scene_, scene_.animations.size(), 0, pose);
         for (size_t i = 0; i < pose.worldFromNode.size(); ++i) {
             const float* values = glm::value_ptr(pose.worldFromNode[i]);
-            if (!std::all_of(values, values + 16, usable))
+            if (!std::all_of(values, values + 16, usableNumber))
                 file_.refuse(fmt::format("node '{}'", scene_.nodes[i].name), "lies or stretches beyond all measure");
         }
         const Bounds bounds = worldBounds(scene_, pose);
         for (int axis = 0; !bounds.empty() && axis < 3; ++axis)
-            if (!usable(bounds.min[axis]) || !usable(bounds.max[axis]))
+            if (!usableNumber(bounds.min[axis]) || !usableNumber(bounds.max[axis]))
                 file_.refuse("scene", fmt::format("reaches farther than {} m", largestNumber));
     }
 
     GltfFile file_;
+    const ImportChoice& choice_;
+    Progress* progress_;
     tinygltf::Model model_;
+    GltfAccessors accessors_{file_, model_};
     Scene scene_;
-    std::vector<TextureCoordinates> coordinates_;        // one per material of the file
-    std::map<std::pair<int, int>, int> textures_;        // (image, sampler) to Scene::textures
-    std::map<std::array<int, 4>, VertexRange> vertices_; // (position, normal, uv, material if it moves uv)
-    std::vector<int> nodes_;                             // node of the file to Scene::nodes
+    std::vector<TextureCoordinates> coordinates_;      // one per material of the file
+    std::map<std::pair<int, int>, int> textures_;      // (image, sampler) to Scene::textures
+    std::map<std::vector<int>, VertexRange> vertices_; // by accessors, and the material if it moves uv
+    std::vector<int> nodes_;                           // node of the file to Scene::nodes
     size_t keyCount_ = 0, textureBytes_ = 0;
 };
 
 } // namespace
 
-Scene importGltf(const std::filesystem::path& file) { return Importer(file).run(); }
+Scene importGltf(const std::filesystem::path& file, const ImportChoice& choice, Progress* progress) {
+    if (progress) progress->report("reading the file", 0);
+    return Importer(GltfFile(file, acceptedExtensions()), choice, progress).run();
+}
+
+Scene importGltf(const std::filesystem::path& file, std::vector<uint8_t> bytes) {
+    return Importer(GltfFile(file, std::move(bytes), acceptedExtensions()), {}, nullptr).run();
+}
 
 } // namespace penumbra

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Cameras, lights and ground: the scene's own, or ones made from its bounds.
-#include "renderer/scene/scene.h"
+#include "renderer/scene/posing.h"
 
 #include <algorithm>
 #include <cmath>
@@ -156,18 +156,17 @@ bool wantsGround(const Scene& scene, const Pose& pose) {
             }
     };
 
+    std::vector<glm::vec3> positionsWorld;
     for (size_t n = 0; n < scene.nodes.size(); ++n) {
         const Node& node = scene.nodes[n];
         if (!node.visible || node.mesh < 0) continue;
-        const glm::mat4& worldFromNode = pose.worldFromNode[n];
-        const float winding = glm::determinant(glm::mat3(worldFromNode)) < 0 ? -1.0f : 1.0f;
         for (const Primitive& primitive : scene.meshes[size_t(node.mesh)].primitives) {
-            if (transformed(primitive.bounds, worldFromNode).min.y > highest) continue;
+            if (posedBounds(scene, pose, n, primitive).min.y > highest) continue;
+            const glm::mat4& matrix = worldFromModel(pose, scene, n, primitive);
+            const float winding = glm::determinant(glm::mat3(matrix)) < 0 ? -1.0f : 1.0f;
             const bool doubleSided = scene.materials[size_t(primitive.material)].doubleSided;
-            const auto corner = [&](uint32_t i) {
-                const size_t vertex = primitive.firstVertex + scene.indices[primitive.firstIndex + i];
-                return glm::vec3(worldFromNode * glm::vec4(scene.positions[vertex], 1));
-            };
+            posedPositions(scene, pose, n, primitive, positionsWorld);
+            const auto corner = [&](uint32_t i) { return positionsWorld[scene.indices[primitive.firstIndex + i]]; };
             for (uint32_t i = 0; i < primitive.indexCount; i += 3) {
                 const glm::vec3 a = corner(i), b = corner(i + 1), c = corner(i + 2);
                 if (std::max({a.y, b.y, c.y}) > highest) continue;

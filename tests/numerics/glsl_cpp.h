@@ -44,6 +44,7 @@ auto min(A a, B b) {
 }
 using glm::abs;
 using glm::cos;
+using glm::cross;
 using glm::dot;
 using glm::floor;
 using glm::fract;
@@ -61,6 +62,7 @@ using vec3 = glm::vec<3, float>;
 using vec4 = glm::vec<4, float>;
 #include "shaders/lib/light_space.glsl"
 #include "shaders/lib/octahedral.glsl"
+#include "shaders/lib/posing.glsl"
 #include "shaders/lib/sampling.glsl"
 #include "shaders/lib/srgb.glsl"
 } // namespace f32
@@ -73,6 +75,7 @@ using vec3 = glm::vec<3, double>;
 using vec4 = glm::vec<4, double>;
 #include "shaders/lib/light_space.glsl"
 #include "shaders/lib/octahedral.glsl"
+#include "shaders/lib/posing.glsl"
 #include "shaders/lib/sampling.glsl"
 #include "shaders/lib/srgb.glsl"
 } // namespace f64

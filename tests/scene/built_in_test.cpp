@@ -56,7 +56,7 @@ TEST_CASE("every built-in scene has a camera, a light with a size, a floor and n
         CHECK(scene.lights[0].size.x > 0);
         CHECK(scene.notes.empty());
         Pose pose;
-        evaluatePose(scene, 0, pose);
+        evaluatePose(scene, 0, 0, pose);
         CHECK_FALSE(wantsGround(scene, pose));
         const AreaLight light = defaultLight(scene, pose);
         CHECK(light.position.y > worldBounds(scene, pose).max.y);
@@ -85,15 +85,15 @@ TEST_CASE("the courtyard is rich but not heavy") {
     CHECK(scene.animations.size() == 1);
     CHECK(scene.textures.size() == 1);
     Pose still, later;
-    evaluatePose(scene, 0, still);
-    evaluatePose(scene, 3, later);
+    evaluatePose(scene, 0, 0, still);
+    evaluatePose(scene, 0, 3, later);
     CHECK(still != later);
 }
 
 TEST_CASE("the scenes with closed forms stand where their formulas expect them") {
     const auto lightOf = [](const Scene& scene) {
         Pose pose;
-        evaluatePose(scene, 0, pose);
+        evaluatePose(scene, 0, 0, pose);
         return defaultLight(scene, pose);
     };
     for (const char* name : {"half-plane", "rectangle", "sphere"}) {
@@ -120,7 +120,7 @@ TEST_CASE("the scenes with closed forms stand where their formulas expect them")
 
     const Scene boxes = builtIn("two-boxes");
     Pose pose;
-    evaluatePose(boxes, 0, pose);
+    evaluatePose(boxes, 0, 0, pose);
     const Camera camera = defaultCamera(boxes, pose);
     CHECK(glm::distance(camera.eye, glm::vec3(2.5f, 3, 4)) < 1e-5f);
     CHECK(camera.fovY == Approx(45));

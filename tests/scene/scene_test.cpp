@@ -39,17 +39,19 @@ Scene boxes(const std::vector<Bounds>& list) {
 
 Pose poseAt(const Scene& scene, double seconds) {
     Pose pose;
-    evaluatePose(scene, seconds, pose);
+    evaluatePose(scene, 0, seconds, pose);
     return pose;
 }
 
 // One node whose `path` is animated.
 Scene animated(AnimationChannel::Path path, AnimationChannel::Interpolation interpolation, std::vector<float> times,
-               std::vector<glm::vec4> values) {
+               const std::vector<glm::vec4>& values) {
     Scene scene;
     scene.nodes.emplace_back();
     AnimationChannel channel{.path = path, .interpolation = interpolation, .times = std::move(times)};
-    channel.values = std::move(values);
+    channel.width = path == AnimationChannel::Path::Rotation ? 4 : 3;
+    for (const glm::vec4& value : values)
+        for (uint32_t i = 0; i < channel.width; ++i) channel.values.push_back(value[int(i)]);
     Animation animation{.duration = channel.times.back()};
     animation.channels.push_back(std::move(channel));
     scene.animations.push_back(std::move(animation));
@@ -123,7 +125,7 @@ TEST_CASE("a pose that has its size is evaluated without allocation") {
     const Scene scene = animated(Path::Translation, Interpolation::Linear, {0, 1}, {{0, 0, 0, 0}, {1, 0, 0, 0}});
     Pose pose = poseAt(scene, 0);
     const glm::mat4* const memory = pose.worldFromNode.data();
-    evaluatePose(scene, 0.5, pose);
+    evaluatePose(scene, 0, 0.5, pose);
     CHECK(pose.worldFromNode.data() == memory);
     CHECK(pose == poseAt(scene, 0.5));
 }

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "tests/support/scenes.h"
 
+#include "renderer/scene/closed_surface.h"
+
 #include <cmath>
 
 namespace penumbra::test {
@@ -86,6 +88,7 @@ std::shared_ptr<const Scene> SceneBuilder::merged() const {
                   .vertexCount = static_cast<uint32_t>(scene->positions.size())};
     for (const glm::vec3 p : scene->positions) all.bounds.add(p);
     for (uint32_t i = 0; i < all.indexCount; ++i) scene->indices[i] = i;
+    all.closed = isClosedSurface(*scene, all);
     scene->meshes = {{"merged", {all}}};
     scene->nodes.resize(1);
     return scene;

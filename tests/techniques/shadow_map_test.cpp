@@ -233,10 +233,10 @@ TEST_CASE("drawing only the fronts of closed surfaces gives the same map") {
         Session s = session(closed.merged(), "hard");
         s.light.position = position;
         const std::vector<float> fronts = shadowMapOf(s);
-        REQUIRE(renderer().state().drawables()[0].closed);
+        REQUIRE(renderer().state().occluders()[0].closed);
         s.scene = open.merged();
         const std::vector<float> both = shadowMapOf(s);
-        REQUIRE_FALSE(renderer().state().drawables()[0].closed);
+        REQUIRE_FALSE(renderer().state().occluders()[0].closed);
         float largest = 0; // rounding of two faces that meet in one texel
         for (size_t i = 0; i < both.size(); ++i) largest = std::max(largest, std::abs(fronts[i] - both[i]));
         CHECK(largest < 1e-5f);
