@@ -8,6 +8,7 @@
 #include <cmath>
 #include <cstring>
 #include <fstream>
+#include <optional>
 #include <random>
 #include <set>
 
@@ -473,4 +474,112 @@ TEST_CASE("lights keep the size and shape that their extras state") {
 
     scene["extensions"]["KHR_lights_punctual"]["lights"][0]["extras"]["size"] = -1;
     CHECK(messageOf(folder.write("lights.gltf", scene.dump())).find("'size'") != std::string::npos);
+}
+
+namespace {
+
+// A file below ../shared/scenes, or nothing with a word about it.
+std::optional<Scene> sharedScene(const char* name) {
+    const fs::path file = fs::path(PENUMBRA_SHARED_FOLDER) / "scenes" / name;
+    if (fs::exists(file)) return importGltf(file);
+    WARN("left out: no " << name);
+    return std::nullopt;
+}
+
+// How far the corners of the triangles of `a` are from the nearest vertex of `b` at most.
+float farthest(const Scene& a, const Scene& b) {
+    float most = 0;
+    for (size_t i = 0; i < a.positions.size(); i += 97) {
+        float nearest = 1e30f;
+        for (const glm::vec3& q : b.positions) nearest = std::min(nearest, glm::distance(a.positions[i], q));
+        most = std::max(most, nearest);
+    }
+    return most;
+}
+
+} // namespace
+
+TEST_CASE("what Draco and meshopt compressed is what was there before") {
+    const auto plain = sharedScene("draco_pair/draco_test.glb"), draco = sharedScene("draco_pair/draco_test_draco.glb");
+    if (plain && draco) {
+        CHECK(draco->triangleCount() == plain->triangleCount());
+        const float step = worldBounds(*plain,
+                                       [&] {
+                                           Pose pose;
+                                           evaluatePose(*plain, 0, 0, pose);
+                                           return pose;
+                                       }())
+                               .diagonal() /
+                           2048; // of a quantisation to 11 bits
+        CHECK(farthest(*plain, *draco) < step);
+        CHECK(farthest(*draco, *plain) < step);
+    }
+    const auto fallback = sharedScene("meshopt_quantized_boxes/meshopt-fallback/meshopt-fallback.gltf"),
+               compressed = sharedScene("meshopt_quantized_boxes/meshopt-no-fallback/meshopt-no-fallback.gltf");
+    if (fallback && compressed) {
+        CHECK(compressed->triangleCount() == fallback->triangleCount());
+        CHECK(farthest(*compressed, *fallback) == 0);
+        CHECK(farthest(*fallback, *compressed) == 0);
+    }
+}
+
+TEST_CASE("a file's scenes and variants are chosen by name") {
+    const Folder folder;
+    json scene = square();
+    scene["extensionsUsed"] = {"KHR_materials_variants"};
+    scene["extensions"]["KHR_materials_variants"]["variants"] = {{{"name", "wood"}}, {{"name", "stone"}}};
+    scene["materials"] = {{{"name", "plain"}}, {{"name", "oak"}}, {{"name", "granite"}}};
+    scene["meshes"][0]["primitives"][0]["material"] = 0;
+    scene["meshes"][0]["primitives"][0]["extensions"]["KHR_materials_variants"]["mappings"] = {
+        {{"material", 1}, {"variants", {0}}}, {{"material", 2}, {"variants", {1}}}};
+    scene["nodes"] = {{{"mesh", 0}}, {{"name", "empty"}}};
+    scene["scenes"] = {{{"name", "full"}, {"nodes", {0}}}, {{"name", "bare"}, {"nodes", {1}}}};
+    const fs::path file = folder.write("choice.gltf", scene.dump());
+
+    const auto materialOf = [](const Scene& s) { return s.materials[size_t(s.meshes[0].primitives[0].material)].name; };
+    const Scene plain = importGltf(file);
+    CHECK(plain.sceneNames == std::vector<std::string>{"full", "bare"});
+    CHECK(plain.variantNames == std::vector<std::string>{"wood", "stone"});
+    CHECK(plain.triangleCount() == 2);
+    CHECK(materialOf(plain) == "plain");
+    CHECK(materialOf(importGltf(file, ImportChoice{.scene = {}, .variant = "wood"})) == "oak");
+    CHECK(materialOf(importGltf(file, ImportChoice{.scene = {}, .variant = "stone"})) == "granite");
+    CHECK(importGltf(file, ImportChoice{.scene = "bare", .variant = {}}).triangleCount() == 0);
+    CHECK_THROWS_WITH(importGltf(file, ImportChoice{.scene = "ful", .variant = {}}),
+                      Catch::Contains("did you mean 'full'"));
+    CHECK_THROWS_WITH(importGltf(file, ImportChoice{.scene = {}, .variant = "gold"}), Catch::Contains("wood, stone"));
+}
+
+TEST_CASE("instances of a mesh stand where their attributes put them") {
+    const Folder folder;
+    json scene = square();
+    const std::string positions = bytesOf(std::vector<float>{0, 0, 0, 0, 0, 1, 1, 0, 1, 1, 0, 0}),
+                      indices = bytesOf(std::vector<uint16_t>{0, 1, 2, 0, 2, 3}),
+                      places = bytesOf(std::vector<float>{0, 0, 0, 5, 0, 0}),
+                      scales = bytesOf(std::vector<float>{1, 1, 1, 2, 2, 2});
+    const std::string bytes = positions + indices + places + scales;
+    scene["buffers"][0] = {{"byteLength", bytes.size()}, {"uri", "data:;base64," + base64(bytes)}};
+    scene["bufferViews"].push_back({{"buffer", 0}, {"byteOffset", 60}, {"byteLength", 48}});
+    scene["accessors"].push_back({{"bufferView", 2}, {"componentType", 5126}, {"count", 2}, {"type", "VEC3"}});
+    scene["accessors"].push_back(
+        {{"bufferView", 2}, {"byteOffset", 24}, {"componentType", 5126}, {"count", 2}, {"type", "VEC3"}});
+    scene["extensionsUsed"] = {"EXT_mesh_gpu_instancing"};
+    scene["nodes"][0]["translation"] = {0, 3, 0};
+    scene["nodes"][0]["extensions"]["EXT_mesh_gpu_instancing"]["attributes"] = {{"TRANSLATION", 2}, {"SCALE", 3}};
+    const Scene loaded = importGltf(folder.write("instances.gltf", scene.dump()));
+    CHECK(loaded.triangleCount() == 4);
+    const Bounds bounds = exactBounds(loaded);
+    CHECK(bounds.min == glm::vec3(0, 3, 0));
+    CHECK(bounds.max == glm::vec3(7, 3, 2));
+    CHECK(loaded.notes.empty());
+}
+
+TEST_CASE("a progress that is cancelled stops the import") {
+    const Folder folder;
+    const fs::path file = folder.write("square.gltf", square().dump());
+    Progress progress;
+    CHECK_NOTHROW(importGltf(file, {}, &progress));
+    CHECK(progress.share() > 0.5);
+    progress.cancel();
+    CHECK_THROWS_AS(importGltf(file, {}, &progress), Cancelled);
 }

@@ -94,6 +94,64 @@ std::shared_ptr<const Scene> SceneBuilder::merged() const {
     return scene;
 }
 
+std::shared_ptr<Scene> wavingScene() {
+    auto scene = std::make_shared<Scene>(*SceneBuilder().floor(3).box({0.9f, 0, -0.3f}, {1.4f, 0.5f, 0.3f}).build());
+    // The board: along x from −1.5 m to 0.5 m, two rows of vertices, 1 m above the floor.
+    constexpr uint32_t columns = 9;
+    Primitive board{.firstIndex = static_cast<uint32_t>(scene->indices.size()),
+                    .firstVertex = static_cast<uint32_t>(scene->positions.size()),
+                    .vertexCount = 2 * columns,
+                    .influenceSets = 1,
+                    .morphTargets = 1};
+    Bounds fixed, bent, bulge;
+    for (uint32_t i = 0; i < columns; ++i)
+        for (const float z : {-0.4f, 0.4f}) {
+            const float along = static_cast<float>(i) / (columns - 1), x = -1.5f + 2 * along;
+            const glm::vec3 p(x, 1, z), out(0, 0.3f * std::sin(3.14159f * along), 0);
+            scene->positions.push_back(p);
+            scene->normals.emplace_back(0, 1, 0);
+            scene->uvs.emplace_back(0);
+            scene->influences.push_back({.joints = glm::u16vec4(0, 1, 0, 0), .weights = {1 - along, along, 0, 0}});
+            scene->morphDeltas.push_back({.position = out});
+            if (along < 1) fixed.add(p);
+            if (along > 0) bent.add(p);
+            bulge.add(out);
+            board.bounds.add(p);
+        }
+    for (uint32_t i = 0; i + 1 < columns; ++i)
+        for (const uint32_t corner : {0u, 1u, 3u, 0u, 3u, 2u}) scene->indices.push_back(2 * i + corner);
+    board.indexCount = static_cast<uint32_t>(scene->indices.size()) - board.firstIndex;
+    board.jointBounds = {{0, fixed}, {1, bent}};
+    board.morphBounds = {bulge};
+    scene->meshes.push_back({"board", {board}});
+
+    const int first = static_cast<int>(scene->nodes.size());
+    Node root, tip, shown;
+    tip.parent = first;
+    tip.translation = {0.5f, 1, 0};
+    shown.mesh = static_cast<int>(scene->meshes.size()) - 1;
+    shown.skin = 0;
+    scene->nodes.insert(scene->nodes.end(), {root, tip, shown});
+    Skin skin{.joints = {first, first + 1}, .jointFromMesh = {glm::mat4(1), glm::mat4(1)}};
+    skin.jointFromMesh[1][3] = {-0.5f, -1, 0, 1};
+    scene->skins.push_back(skin);
+    scene->restWeights = {0};
+    const float s = std::sin(0.4f), c = std::cos(0.4f);
+    scene->animations.push_back({.name = "wave",
+                                 .duration = 1,
+                                 .channels = {{.node = first + 1,
+                                               .path = AnimationChannel::Path::Rotation,
+                                               .width = 4,
+                                               .times = {0, 0.5f, 1},
+                                               .values = {0, 0, 0, 1, 0, 0, s, c, 0, 0, 0, 1}},
+                                              {.node = first + 2,
+                                               .path = AnimationChannel::Path::Weights,
+                                               .width = 1,
+                                               .times = {0, 0.5f, 1},
+                                               .values = {0, 1, 0}}}});
+    return scene;
+}
+
 Session session(std::shared_ptr<const Scene> scene, std::string_view technique) {
     Session s;
     s.scene = std::move(scene);

@@ -34,6 +34,10 @@ private:
     Scene scene_;
 };
 
+// A floor, and above it a board that a joint bends and a morph target bulges, both by the clip "wave" of 1 s; a rigid
+// box stands beside it.
+std::shared_ptr<Scene> wavingScene();
+
 // A session of a technique at its defaults: small picture, small map, light 1x1 m at (0, 4, 0) facing down.
 Session session(std::shared_ptr<const Scene> scene, std::string_view technique = "hard");
 
