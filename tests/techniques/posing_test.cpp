@@ -82,7 +82,7 @@ TEST_CASE("the GPU poses what the CPU poses") {
     const ShadowImage flat = draw(s);
     s.time = 0.5;
     const ShadowImage bent = draw(s);
-    CHECK(difference(flat, bent) > 0.03f);
+    CHECK(difference(flat, bent) > 0.02f); // ten times what rounding does
     CHECK(driverMessages().empty());
 }
 
