@@ -105,7 +105,6 @@ public:
         for (size_t i = 0; i < model_.nodes.size(); ++i) checkSkin(i);
         for (size_t i = 0; i < model_.animations.size(); ++i) addAnimation(i);
         checkExtent();
-        findClosedSurfaces();
         return std::move(scene_);
     }
 
@@ -500,7 +499,9 @@ private:
         VertexRange range{.first = uint32_t(scene_.positions.size()), .count = uint32_t(values.size() / 3)};
         const size_t count = values.size() / 3;
         if (count > mostVertices - scene_.positions.size()) file_.refuse(from.place, "brings too many vertices");
-        for (size_t i = 0; i < count; ++i) scene_.positions.push_back(glm::make_vec3(&values[3 * i]));
+        scene_.positions.resize(range.first + count); // not one by one: a vector that grows by itself doubles
+        for (size_t i = 0; i < count; ++i) scene_.positions[range.first + i] = glm::make_vec3(&values[3 * i]);
+        values = {};
         addNormals(from, count);
         addTextureCoordinates(from, uv, count);
         addColours(from, range);
@@ -512,20 +513,24 @@ private:
 
     // Unit vectors; zero where the file has none, which means flat.
     void addNormals(const Source& from, size_t count) {
-        if (!from.has("NORMAL")) return scene_.normals.resize(scene_.normals.size() + count, glm::vec3(0));
+        const size_t first = scene_.normals.size();
+        scene_.normals.resize(first + count, glm::vec3(0));
+        if (!from.has("NORMAL")) return;
         const std::vector<float> values = attribute(from, "NORMAL", {3}, count);
         for (size_t i = 0; i < count; ++i) {
             const glm::vec3 normal = glm::make_vec3(&values[3 * i]);
             const float length = glm::length(normal);
-            scene_.normals.push_back(length > 1e-12f && std::isfinite(length) ? normal / length : glm::vec3(0));
+            if (length > 1e-12f && std::isfinite(length)) scene_.normals[first + i] = normal / length;
         }
     }
 
     void addTextureCoordinates(const Source& from, const std::optional<std::string>& uv, size_t count) {
-        if (!uv) return scene_.uvs.resize(scene_.uvs.size() + count, glm::vec2(0));
+        const size_t first = scene_.uvs.size();
+        scene_.uvs.resize(first + count, glm::vec2(0));
+        if (!uv) return;
         const std::vector<float> values = attribute(from, *uv, {2}, count);
         const TextureTransform& transform = coordinates_[size_t(from.material)].transform;
-        for (size_t i = 0; i < count; ++i) scene_.uvs.push_back(transform(glm::make_vec2(&values[2 * i])));
+        for (size_t i = 0; i < count; ++i) scene_.uvs[first + i] = transform(glm::make_vec2(&values[2 * i]));
     }
 
     void addColours(const Source& from, const VertexRange& range) {
@@ -632,16 +637,6 @@ private:
             }
         }
         for (const auto& [joint, bounds] : byJoint) primitive.jointBounds.push_back({joint, bounds});
-    }
-
-    void findClosedSurfaces() {
-        for (size_t m = 0; m < scene_.meshes.size(); ++m) {
-            report("finding closed surfaces", 0.8 + 0.2 * double(m) / double(scene_.meshes.size()));
-            for (Primitive& primitive : scene_.meshes[m].primitives)
-                primitive.closed = primitive.influenceSets == 0 && primitive.morphTargets == 0 &&
-                                   !scene_.materials[size_t(primitive.material)].masked &&
-                                   isClosedSurface(scene_, primitive);
-        }
     }
 
     // --- nodes -------------------------------------------------------------------------------------------------------
@@ -1000,15 +995,26 @@ private:
     size_t keyCount_ = 0, textureBytes_ = 0;
 };
 
+Scene imported(GltfFile file, const ImportChoice& choice, Progress* progress) {
+    Scene scene = Importer(std::move(file), choice, progress).run(); // and the file's bytes are gone
+    for (size_t m = 0; m < scene.meshes.size(); ++m) {
+        if (progress) progress->report("finding closed surfaces", 0.8 + 0.2 * double(m) / double(scene.meshes.size()));
+        for (Primitive& primitive : scene.meshes[m].primitives)
+            primitive.closed = primitive.influenceSets == 0 && primitive.morphTargets == 0 &&
+                               !scene.materials[size_t(primitive.material)].masked && isClosedSurface(scene, primitive);
+    }
+    return scene;
+}
+
 } // namespace
 
 Scene importGltf(const std::filesystem::path& file, const ImportChoice& choice, Progress* progress) {
     if (progress) progress->report("reading the file", 0);
-    return Importer(GltfFile(file, acceptedExtensions()), choice, progress).run();
+    return imported(GltfFile(file, acceptedExtensions()), choice, progress);
 }
 
 Scene importGltf(const std::filesystem::path& file, std::vector<uint8_t> bytes) {
-    return Importer(GltfFile(file, std::move(bytes), acceptedExtensions()), {}, nullptr).run();
+    return imported(GltfFile(file, std::move(bytes), acceptedExtensions()), {}, nullptr);
 }
 
 } // namespace penumbra
