@@ -9,6 +9,8 @@
 #include <nlohmann/json.hpp>
 
 #include <algorithm>
+#include <cctype>
+#include <cmath>
 
 namespace penumbra {
 namespace {
@@ -87,6 +89,27 @@ Json techniqueJson(const Card& card, const ParameterSet& parameterSet, const Flo
             {"buffers", buffers}};
 }
 
+// What a scene file offers to choose from.
+Json sceneJson(const Scene& scene) {
+    const auto names = [](const auto& list) {
+        Json json = Json::array();
+        for (const auto& element : list) json.push_back(element.name);
+        return json;
+    };
+    Json clips = Json::array();
+    for (const Animation& clip : scene.animations)
+        clips.push_back(
+            {{"name", clip.name}, {"seconds", std::round(1000.0 * static_cast<double>(clip.duration)) / 1000}});
+    return {{"file", scene.file.string()},
+            {"triangles", scene.triangleCount()},
+            {"parts", scene.sceneNames},
+            {"variants", scene.variantNames},
+            {"clips", clips},
+            {"cameras", names(scene.cameras)},
+            {"lights", names(scene.lights)},
+            {"notes", scene.notes}};
+}
+
 // Everything that there is to list; the text is written from it.
 Json listing(const Options& options) {
     Session session = makeSession(options);
@@ -96,10 +119,12 @@ Json listing(const Options& options) {
         session.techniques.choose(card->id);
         techniques.push_back(techniqueJson(*card, session.techniques.parameters(), flowOf(session)));
     }
-    return {{"version", PENUMBRA_VERSION},
-            {"techniques", techniques},
-            {"scenes", builtInScenes()},
-            {"presets", presetNames()}};
+    Json json = {{"version", PENUMBRA_VERSION},
+                 {"techniques", techniques},
+                 {"scenes", builtInScenes()},
+                 {"presets", presetNames()}};
+    if (options.scene) json["scene"] = sceneJson(*session.scene);
+    return json;
 }
 
 std::string text(const Json& json, const char* key) { return json[key].get<std::string>(); }
@@ -142,6 +167,22 @@ void printNames(const char* title, const Json& names) {
     for (const Json& name : names) fmt::print("  {}\n", name.get<std::string>());
 }
 
+void printScene(const Json& scene) {
+    fmt::print("{}: {} triangles\n", text(scene, "file"), scene["triangles"].get<uint64_t>());
+    for (const auto& [key, list] : scene.items()) {
+        // Notes go to stderr, and a single part is no choice.
+        if (!list.is_array() || list.empty() || key == "notes" || (key == "parts" && list.size() == 1)) continue;
+        fmt::print("  {}{}:\n", char(std::toupper(key[0])), key.substr(1));
+        for (const Json& entry : list) {
+            if (entry.is_string())
+                fmt::print("    {}\n", entry.get<std::string>());
+            else
+                fmt::print("    {} ({} s)\n", text(entry, "name"), entry["seconds"].get<double>());
+        }
+    }
+    fmt::print("\n");
+}
+
 } // namespace
 
 void list(const Options& options) {
@@ -150,6 +191,7 @@ void list(const Options& options) {
         fmt::print("{}\n", json.dump(2, ' ', false, Json::error_handler_t::replace));
         return;
     }
+    if (json.contains("scene")) printScene(json["scene"]);
     for (const Json& technique : json["techniques"]) printTechnique(technique);
     printNames("Scenes", json["scenes"]);
     fmt::print("\n");
