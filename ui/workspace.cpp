@@ -251,11 +251,13 @@ void Workspace::takeLoaded() {
 void Workspace::loadingBar(ImVec2 corner, float width, bool cancel) {
     const Progress& progress = *loader_.progress();
     const float em = ImGui::GetFontSize(), padding = 0.6f * em;
-    const ImVec2 size{std::min(30 * em, std::max(width - 2 * padding, 1.0f)), 3.6f * em + 2 * padding};
+    const float height = ImGui::GetTextLineHeightWithSpacing() + ImGui::GetFrameHeight() + 2 * padding;
+    const ImVec2 size{std::min(30 * em, std::max(width - 2 * padding, 1.0f)), height};
     ImGui::SetCursorScreenPos({corner.x + padding, corner.y - size.y - padding});
     ImGui::PushStyleVar(ImGuiStyleVar_WindowPadding, {padding, padding});
     ImGui::PushStyleColor(ImGuiCol_ChildBg, ImGui::GetStyleColorVec4(ImGuiCol_PopupBg));
-    if (ImGui::BeginChild("loading", size, true, ImGuiWindowFlags_NoScrollbar)) {
+    if (ImGui::BeginChild("loading", size, true,
+                          ImGuiWindowFlags_NoScrollbar | ImGuiWindowFlags_AlwaysUseWindowPadding)) {
         const std::string name = std::filesystem::path(loading_.nameOrFile).filename().string();
         text(ShortText("Loading {}: {}", name, progress.doing()).view());
         const float button = ImGui::CalcTextSize("Cancel").x + 2 * ImGui::GetStyle().FramePadding.x;
