@@ -162,84 +162,90 @@ std::vector<dvec2> curved(const std::vector<dvec2>& profile) {
     return result;
 }
 
-void addPots(Gltf& gltf, Random& random, const Palette& p) {
-    const int pot = gltf.mesh("pot", {{lathe(potProfile, 24), p.clay}});
-    const int bluePot = gltf.mesh("blue pot", {{lathe(potProfile, 18), p.blueWood}});
-    const int bush =
-        gltf.mesh("bush", {{foliage(random, 260, 0.42, 0.15), p.leaf}, {foliage(random, 160, 0.4, 0.15), p.darkLeaf}});
-    const int geranium = gltf.mesh("geranium", {{foliage(random, 200, 0.38, 0.13, 0.8), p.darkLeaf},
-                                                {foliage(random, 90, 0.42, 0.085, 0.9), p.geranium}});
+struct Pots { // meshes
+    int clay, blue, bush, geranium;
+};
+
+Pots makePots(Gltf& gltf, Random& random, const Palette& p) {
+    return {.clay = gltf.mesh("pot", {{lathe(potProfile, 24), p.clay}}),
+            .blue = gltf.mesh("blue pot", {{lathe(potProfile, 18), p.blueWood}}),
+            .bush = gltf.mesh(
+                "bush", {{foliage(random, 260, 0.42, 0.15), p.leaf}, {foliage(random, 160, 0.4, 0.15), p.darkLeaf}}),
+            .geranium = gltf.mesh("geranium", {{foliage(random, 200, 0.38, 0.13, 0.8), p.darkLeaf},
+                                               {foliage(random, 90, 0.42, 0.085, 0.9), p.geranium}})};
+}
+
+void addStandingPots(Gltf& gltf, const Pots& pots) {
     struct Place {
         dvec3 at;
         double size;
         bool flowers;
     };
     const std::array<Place, 9> places{{{{0.35, 0, -3.6}, 0.7, false},
-                                       {{-4.2, 0.54, 0.92}, 0.62, true},
-                                       {{-4.2, 1.08, 0.11}, 0.62, true},
-                                       {{-4.2, 1.62, -0.7}, 0.62, true},
-                                       {{-3.72, 2.16, -3.6}, 0.85, false},
+                                       {{-4.2, 0.57, 0.92}, 0.62, true}, // on the stairs
+                                       {{-4.2, 1.11, 0.11}, 0.62, true},
+                                       {{-4.2, 1.65, -0.7}, 0.62, true},
+                                       {{-3.72, 2.19, -3.6}, 0.85, false},
                                        {{3.75, 0, -3.55}, 1.0, true},
                                        {{4.5, 0, -0.3}, 1.1, false},
                                        {{-3.75, 0, 2.35}, 1.25, false},
                                        {{-3.95, 0, 3.2}, 0.8, true}}};
     for (size_t i = 0; i < places.size(); ++i) {
         const Place& place = places[i];
-        gltf.node("pot", pot, place.at, 0, place.size);
-        gltf.node(place.flowers ? "geranium" : "bush", place.flowers ? geranium : bush,
+        gltf.node("pot", pots.clay, place.at, 0, place.size);
+        gltf.node(place.flowers ? "geranium" : "bush", place.flowers ? pots.geranium : pots.bush,
                   place.at + dvec3(0, 0.7 * place.size, 0), 77.0 * double(i), place.size);
     }
-    // Two standards beside the door.
-    const int ball = gltf.mesh("standard", {{foliage(random, 500, 0.42, 0.09), p.leaf},
-                                            {foliage(random, 400, 0.4, 0.09), p.darkLeaf},
-                                            {rod({0, -1.1, 0}, {0, 0, 0}, 0.025, 10), p.bark}});
-    for (const double x : {-2.6, -0.45}) {
-        gltf.node("pot", pot, {x, 0, -3.5}, 0, 0.95);
-        gltf.node("standard", ball, {x, 1.45, -3.5}, 90 * x);
-    }
+}
 
-    // Flowers on the sills.
+// Beside the door.
+void addStandards(Gltf& gltf, Random& random, const Palette& p, const Pots& pots) {
+    const int standard = gltf.mesh("standard", {{foliage(random, 500, 0.42, 0.09), p.leaf},
+                                                {foliage(random, 400, 0.4, 0.09), p.darkLeaf},
+                                                {rod({0, -1.1, 0}, {0, 0, 0}, 0.025, 10), p.bark}});
+    for (const double x : {-2.6, -0.45}) {
+        gltf.node("pot", pots.clay, {x, 0, -3.5}, 0, 0.95);
+        gltf.node("standard", standard, {x, 1.45, -3.5}, 90 * x);
+    }
+}
+
+void addFlowersOnSills(Gltf& gltf, const Palette& p, const Pots& pots) {
     const int trough = gltf.mesh("trough", {{boxAround({0, 0.09, 0}, {0.9, 0.18, 0.18}), p.clay}});
     const auto sill = [&](const dvec3& at, double degrees) {
         gltf.node("trough", trough, at, degrees);
         const dvec3 along = dvec3(turned(degrees, {0, 1, 0}) * glm::dvec4(1, 0, 0, 0));
         for (int i = -1; i <= 1; ++i)
-            gltf.node("geranium", geranium, at + 0.3 * i * along + dvec3(0, 0.27, 0), 50.0 * i + degrees, 0.55);
+            gltf.node("geranium", pots.geranium, at + 0.3 * i * along + dvec3(0, 0.27, 0), 50.0 * i + degrees, 0.55);
     };
     sill({2.5, 2.985, -3.88}, 0);
     sill({-4.38, 2.835, 1.75}, 90);
+}
 
-    // Baskets under the pergola.
+// Below the pergola, and small ones in rings on the west wall.
+void addHangingPots(Gltf& gltf, const Palette& p, const Pots& pots) {
     const int chain = gltf.mesh("chain", {{rod({0, 0.35, 0}, {0, 0.9, 0}, 0.008, 6), p.iron}});
     for (const double x : {1.75, 3.3}) {
         const dvec3 at(x, 1.55, -1.85);
         gltf.node("chain", chain, at);
-        gltf.node("pot", pot, at, 0, 0.7);
-        gltf.node("geranium", geranium, at + dvec3(0, 0.44, 0), 120 * x, 0.85);
+        gltf.node("pot", pots.clay, at, 0, 0.7);
+        gltf.node("geranium", pots.geranium, at + dvec3(0, 0.44, 0), 120 * x, 0.85);
     }
-
-    // Small ones in rings on the west wall.
-    const std::array<dvec2, 9> hung{{{3.3, 2.6},
-                                     {3.9, 2.1},
-                                     {3.2, 1.75},
-                                     {2.55, 2.15},
-                                     {4.5, 2.65},
-                                     {4.6, 1.7},
-                                     {2.0, 1.65},
-                                     {1.15, 2.45},
-                                     {0.6, 2.95}}};
+    const std::vector<dvec2> onWall{{3.3, 2.6}, {3.9, 2.1},  {3.2, 1.75},  {2.55, 2.15}, {4.5, 2.65},
+                                    {4.6, 1.7}, {2.0, 1.65}, {1.15, 2.45}, {0.6, 2.95}}; // z, y
     const int ring = gltf.mesh("pot ring", {{torus(0.17, 0.012, 20, 6), p.iron}});
-    for (size_t i = 0; i < hung.size(); ++i) {
-        const dvec3 at(-4.31, hung[i].y, hung[i].x);
+    for (size_t i = 0; i < onWall.size(); ++i) {
+        const dvec3 at(-4.31, onWall[i].y, onWall[i].x);
         gltf.node("pot ring", ring, at + dvec3(0, 0.2, 0));
-        gltf.node("pot", bluePot, at, 0, 0.52);
-        gltf.node("geranium", geranium, at + dvec3(0.02, 0.34, 0), 77.0 * double(i), 0.5);
+        gltf.node("pot", pots.blue, at, 0, 0.52);
+        gltf.node("geranium", pots.geranium, at + dvec3(0.02, 0.34, 0), 77.0 * double(i), 0.5);
     }
+}
 
-    std::vector<dvec2> jarProfile = curved(jarBody);
-    jarProfile.insert(jarProfile.begin(), {0, 0});
-    jarProfile.insert(jarProfile.end(), jarMouth.begin(), jarMouth.end());
-    const int jar = gltf.mesh("oil jar", {{lathe(jarProfile, 48), p.clay}});
+void addOilJars(Gltf& gltf, const Palette& p) {
+    std::vector<dvec2> profile = curved(jarBody);
+    profile.insert(profile.begin(), {0, 0});
+    profile.insert(profile.end(), jarMouth.begin(), jarMouth.end());
+    const int jar = gltf.mesh("oil jar", {{lathe(profile, 48), p.clay}});
     gltf.node("oil jar", jar, {-2.75, 0, 2.2});
     gltf.node("oil jar", jar, {-2.15, 0, 2.75}, 0, 0.68);
 }
@@ -620,7 +626,12 @@ Gltf courtyard() {
     addTableAndChairs(gltf, palette);
     addFountain(gltf, palette);
     addTree(gltf, random, palette);
-    addPots(gltf, random, palette);
+    const Pots pots = makePots(gltf, random, palette);
+    addStandingPots(gltf, pots);
+    addStandards(gltf, random, palette, pots);
+    addFlowersOnSills(gltf, palette, pots);
+    addHangingPots(gltf, palette, pots);
+    addOilJars(gltf, palette);
     addPennants(gltf, palette);
     addLantern(gltf, palette);
     gltf.camera({.eye = {3.3f, 2.7f, 8.0f}, .target = {-0.5f, 0.88f, -1.5f}, .fovY = 40});
