@@ -2,18 +2,14 @@
 // Pictures on disk. The ending of the file decides: .png has 8 bits a channel, .exr, .pfm and .npy keep the floats.
 #pragma once
 
+#include "renderer/core/picture.h"
+
 #include <filesystem>
 #include <string>
 #include <utility>
 #include <vector>
 
 namespace penumbra {
-
-struct Picture {
-    int width = 0, height = 0;
-    std::vector<std::string> channels; // names, such as "R", "G", "B"
-    std::vector<float> values;         // width·height·channels, top row first
-};
 
 // What is told about a picture in the file itself, as (key, text); keys are short ASCII words.
 using Facts = std::vector<std::pair<std::string, std::string>>;

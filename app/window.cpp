@@ -274,20 +274,21 @@ private:
     float dots_ = 0, pixels_ = 0;
 };
 
-// FOLDER/SCENE-TECHNIQUE-YYYYMMDD-HHMMSS.png, with a number behind it where that is taken.
-fs::path pictureFile(const fs::path& folder, const Session& session) {
-    std::string scene = session.scene->name;
-    std::replace_if(
-        scene.begin(), scene.end(), [](unsigned char c) { return c < 32 || c == '/' || c == '\\'; }, '_');
+// FOLDER/SCENE-TECHNIQUE-WHAT-YYYYMMDD-HHMMSS.png, with a number behind it where that is taken.
+fs::path pictureFile(const fs::path& folder, const Session& session, const std::string& what, const char* ending) {
     const std::time_t now = std::time(nullptr);
     std::tm local{};
     localtime_r(&now, &local);
     char moment[32];
     std::strftime(moment, sizeof(moment), "%Y%m%d-%H%M%S", &local);
-    const std::string name = fmt::format("{}-{}-{}", scene, session.techniques.card().id, moment);
-    std::error_code ignored;
-    fs::path file = folder / (name + ".png");
-    for (int i = 2; fs::exists(file, ignored); ++i) file = folder / fmt::format("{}-{}.png", name, i);
+    std::string name = fmt::format("{}-{}-{}{}{}", session.scene->name, session.techniques.card().id, what,
+                                   what.empty() ? "" : "-", moment);
+    std::replace_if(
+        name.begin(), name.end(), [](unsigned char c) { return c < 32 || c == '/' || c == '\\'; }, '_');
+    std::error_code ignored; // a folder that cannot be made shows when the file is written
+    fs::create_directories(folder, ignored);
+    fs::path file = folder / (name + ending);
+    for (int i = 2; fs::exists(file, ignored); ++i) file = folder / fmt::format("{}-{}{}", name, i, ending);
     return file;
 }
 
@@ -299,10 +300,15 @@ Actions actionsOn(Session& session, const Renderer& renderer, const fs::path& pi
         savePreset(userPresetFile(session.techniques, name), session.techniques);
     };
     actions.savePicture = [&session, &renderer, picturesFolder] {
-        const fs::path file = pictureFile(picturesFolder, session);
-        std::error_code ignored; // a folder that cannot be made shows when the file is written
-        fs::create_directories(picturesFolder, ignored);
+        const fs::path file = pictureFile(picturesFolder, session, "", ".png");
         writePicture(file, displayPicture(renderer), factsOf(session, renderer.driver()));
+        return file;
+    };
+    actions.saveBuffer = [&session, &renderer, picturesFolder](const BufferShot& shot) {
+        const fs::path file = pictureFile(picturesFolder, session, shot.label, shot.raw ? ".exr" : ".png");
+        Facts facts = factsOf(session, renderer.driver());
+        facts.push_back({"buffer", shot.label});
+        writePicture(file, shot.picture, facts);
         return file;
     };
     return actions;

@@ -24,8 +24,7 @@ constexpr Channel colourChannels[] = {
     {"own", "", "share of it that shines by itself: emissive or unlit", Unit::None, 0, 1}};
 constexpr Channel motionChannels[] = {{"x", "", "last frame's place minus this frame's", Unit::Pixels},
                                       {"y", "", "last frame's place minus this frame's", Unit::Pixels}};
-constexpr Channel zChannels[] = {
-    {"z", "", "the rasteriser's own depth; 1: near plane, 0: far plane", Unit::None, 0, 1}};
+constexpr Channel zChannels[] = {{"z", "", "the rasteriser's own depth; 1: near plane, 0: far plane"}};
 constexpr Channel litChannels[] = {{"red", "", "reflected light, linear"},
                                    {"green", "", "reflected light, linear"},
                                    {"blue", "", "reflected light, linear"}};

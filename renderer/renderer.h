@@ -61,6 +61,8 @@ public:
     };
     Pixels read(Image image, int layer = 0, int level = 0) const;
 
+    // For passes of others than the frame's, under the same watch.
+    ProgramLibrary& programs() { return programs_; }
     // Recompiles shaders whose files changed on disk; call now and then. Errors stay until mended, one text each with
     // our file and line; the last good program runs on meanwhile.
     const std::vector<std::string>& pollShaders() { return programs_.poll(); }

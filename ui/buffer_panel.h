@@ -1,62 +1,41 @@
 // SPDX-License-Identifier: MIT
-// Every image of the frame, and one of them in detail: channels, range, zoom, the value under the pointer.
+// Every image of the frame, and some of them in detail side by side.
 #pragma once
 
-#include "ui/image_mapping.h"
-#include "ui/widgets.h"
+#include "ui/buffer_view.h"
+#include "ui/thumbnails.h"
 
-#include <optional>
+#include <array>
 
 namespace penumbra {
 
 class BufferPanel {
 public:
-    // Draws into the current ImGui window. `frame` counts the frames rendered: the picked image is read back again, a
-    // few times a second at most, when it changed. `pixelsPerUnit` is the framebuffer's scale.
-    void draw(const Renderer& renderer, uint64_t frame, float pixelsPerUnit);
+    // Draws into the current ImGui window. `frame` counts the frames rendered; `pixelsPerUnit` is the framebuffer's
+    // scale. A picture comes back when one is to be saved.
+    std::optional<BufferShot> draw(Renderer& renderer, uint64_t frame, float pixelsPerUnit);
+    // While nobody looks: gives back what can be had again. Costs nothing when called again.
+    void close();
 
 private:
-    enum class RangeMode { Automatic, Stated, Typed };
+    static constexpr size_t mostViews = 4;
 
-    void list(const Flow& flow);
-    void pick(const Flow& flow, Image image);
-    void readBack(const Renderer& renderer, Image image, uint64_t frame);
-    void controls(const Flow& flow, const ImageSpec& spec);
-    void view(const ImageSpec& spec, float pixelsPerUnit);
-    void navigate(ImVec2 corner, ImVec2 size);
-    void drawPixels(ImVec2 corner, ImVec2 size, float pixelsPerUnit);
-    void probe(const ImageSpec& spec, ImVec2 corner);
-    void updateRange(const ImageSpec& spec);
-    double unitsPerTexel(ImVec2 size) const;
+    void toolbar();
+    void pick(const Renderer& renderer, const std::string* label);
+    std::string_view another(const Renderer& renderer) const;
+    void drawViews(ImVec2 size, float pixelsPerUnit);
+    Sight& sight(size_t view) { return linked_ ? shared_ : own_[view]; }
 
-    std::string picked_; // label
-    int channel_ = 0;    // −1: red, green and blue together
-    int layer_ = 0, level_ = 0;
-    RangeMode mode_ = RangeMode::Automatic;
-    ValueRange range_, typed_;
-
-    Renderer::Pixels pixels_;
-    BadTexels bad_;
-    std::string trouble_; // why nothing could be read
-    std::optional<uint64_t> frameRead_;
-    double nextRead_ = 0; // ImGui's time [s]
-    std::vector<float> scratch_;
-
-    std::optional<double> zoom_;       // window units per texel; none: all of it fits
-    double centreX_ = 0, centreY_ = 0; // texel in the middle, from the upper left
-
-    // What the view's texture was made from.
-    struct Drawn {
-        uint64_t frame = 0;
-        ImageWindow window;
-        ShownChannels channels{};
-        ValueRange range;
-        int width = 0, height = 0;
-        bool operator==(const Drawn&) const = default;
-    };
-    Drawn drawn_;
-    Texture texture_;
-    std::vector<uint8_t> rgba_;
+    std::optional<Inspector> inspector_; // while open
+    Thumbnails thumbnails_;
+    std::array<BufferView, mostViews> views_;
+    std::array<bool, mostViews> present_{};
+    size_t count_ = 1, chosen_ = 0;
+    bool linked_ = true;
+    Sight shared_;
+    std::array<Sight, mostViews> own_;
+    std::optional<glm::dvec2> pointer_; // in image coordinates, where a view was pointed at in the last frame
+    size_t pointedView_ = 0;
 };
 
 } // namespace penumbra

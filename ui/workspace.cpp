@@ -14,7 +14,7 @@ constexpr ImGuiWindowFlags fixedWindow = ImGuiWindowFlags_NoTitleBar | ImGuiWind
 constexpr float sideWidth = 27;
 constexpr float narrowWidth = 64;
 constexpr float lowestDrawer = 8;
-constexpr float firstDrawer = 19;
+constexpr float firstTimings = 19, firstBuffers = 29;
 constexpr double step = 1.0 / 60;     // of time, by the step button [s]
 constexpr float longestFrame = 0.25f; // [s]; after a pause of the program time does not jump further
 
@@ -90,9 +90,10 @@ void Workspace::draw(const Keys& keys, float seconds, float pixelsPerUnit) {
     // In a narrow window the drawer runs below the side panel too.
     const bool narrow = screen.x < narrowWidth * em;
     float drawerHeight = 0;
-    if (drawer_ != Drawer::Closed)
-        drawerHeight =
-            std::min(drawerHeight_ ? *drawerHeight_ * em : std::min(firstDrawer * em, 0.5f * below), highest);
+    if (drawer_ != Drawer::Closed) {
+        const float first = drawer_ == Drawer::Buffers ? firstBuffers : firstTimings;
+        drawerHeight = std::min(drawerHeight_ ? *drawerHeight_ * em : std::min(first * em, 0.6f * below), highest);
+    }
     const float viewHeight = below - drawerHeight, sideHeight = narrow ? viewHeight : below;
     const float drawerWidth = narrow ? screen.x : left;
 
@@ -129,6 +130,7 @@ void Workspace::draw(const Keys& keys, float seconds, float pixelsPerUnit) {
         }
         ImGui::End();
     }
+    if (drawer_ != Drawer::Buffers) buffers_.close();
     carryOut(requests);
     if (keys.picture) takePicture();
     dialogs(keys);
@@ -214,10 +216,12 @@ void Workspace::splitter(ImVec2 corner, float width, float height, float highest
 
 void Workspace::drawer(float pixelsPerUnit) {
     if (!renderer_.hasFrame()) return;
-    if (drawer_ == Drawer::Buffers)
-        buffers_.draw(renderer_, viewport_.frames(), pixelsPerUnit);
-    else
+    if (drawer_ == Drawer::Buffers) {
+        if (const auto shot = buffers_.draw(renderer_, viewport_.frames(), pixelsPerUnit))
+            attempt([&] { say(fmt::format("Saved {}", actions_.saveBuffer(*shot).string())); });
+    } else {
         timings_.draw(renderer_, renderer_.softwareRenderer() && timedHow_ == Timing::Queries);
+    }
 }
 
 void Workspace::carryOut(Requests& requests) {

@@ -21,6 +21,7 @@ struct Actions {
     std::function<std::vector<std::string>()> presetNames; // "technique/name"
     std::function<void(const std::string&name)> loadPreset, savePreset;
     std::function<std::filesystem::path()> savePicture; // of the last frame; where it is
+    std::function<std::filesystem::path(const BufferShot&)> saveBuffer;
 };
 
 class Workspace {

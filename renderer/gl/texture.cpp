@@ -57,6 +57,14 @@ void Texture::clear() {
     for (int level = 0; level < extent_.levels; ++level) glClearTexImage(name(), level, gl.layout, gl.type, zero);
 }
 
+Texture Texture::copy(std::string_view label) const {
+    Texture twin(label, format_, extent_);
+    for (int level = 0; level < extent_.levels; ++level)
+        glCopyImageSubData(name(), target(), level, 0, 0, 0, twin.name(), target(), level, 0, 0, 0,
+                           std::max(extent_.width >> level, 1), std::max(extent_.height >> level, 1), extent_.layers);
+    return twin;
+}
+
 std::vector<float> Texture::read(int layer, int level) const {
     ensure(extent_.samples == 1, "an image of several samples cannot be read back");
     const int width = std::max(extent_.width >> level, 1), height = std::max(extent_.height >> level, 1);

@@ -27,6 +27,8 @@ public:
     const Extent& extent() const { return extent_; }
 
     void clear(); // all zero
+    // A texture of the same storage and texels.
+    Texture copy(std::string_view label) const;
     // All texels of a layer and level as floats, `channels` a texel, row 0 first as OpenGL has it. Stalls.
     std::vector<float> read(int layer = 0, int level = 0) const;
 

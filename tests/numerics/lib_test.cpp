@@ -185,3 +185,56 @@ TEST_CASE("the sRGB curve is within a twentieth of an 8-bit step, from black to 
     CHECK(f32::srgbFromLinear(0.0f) == 0);
     CHECK(f32::srgbFromLinear(1.0f) == Approx(1).margin(2.1e-4));
 }
+
+namespace {
+
+// OKLab from sRGB in [0, 1] (Ottosson 2020), the other way round than shaders/lib/colour_map.glsl.
+dvec3 oklab(dvec3 encoded) {
+    dvec3 linear;
+    for (int c = 0; c < 3; ++c)
+        linear[c] = encoded[c] <= 0.04045 ? encoded[c] / 12.92 : std::pow((encoded[c] + 0.055) / 1.055, 2.4);
+    const double l = std::cbrt(0.4122214708 * linear.r + 0.5363325363 * linear.g + 0.0514459929 * linear.b);
+    const double m = std::cbrt(0.2119034982 * linear.r + 0.6806995451 * linear.g + 0.1073969566 * linear.b);
+    const double s = std::cbrt(0.0883024619 * linear.r + 0.2817188376 * linear.g + 0.6299787005 * linear.b);
+    return {0.2104542553 * l + 0.7936177850 * m - 0.0040720468 * s,
+            1.9779984951 * l - 2.4285922050 * m + 0.4505937099 * s,
+            0.0259040371 * l + 0.7827717662 * m - 0.8086757660 * s};
+}
+
+} // namespace
+
+TEST_CASE("viridis has its published colours and grows evenly lighter") {
+    constexpr int published[10][3] = {{68, 1, 84},    {72, 40, 120},  {62, 73, 137},  {49, 104, 142}, {38, 130, 142},
+                                      {31, 158, 137}, {53, 183, 121}, {110, 206, 88}, {181, 222, 43}, {253, 231, 37}};
+    for (int i = 0; i < 10; ++i)
+        for (int c = 0; c < 3; ++c) {
+            CHECK(255 * f64::viridis(i / 9.0)[c] == Approx(published[i][c]).margin(3.5));
+            CHECK(f32::viridis(static_cast<float>(i) / 9)[c] == Approx(f64::viridis(i / 9.0)[c]).margin(1e-5));
+        }
+    for (int i = 0; i < 256; ++i) {
+        const double step = oklab(f64::viridis((i + 1) / 256.0)).x - oklab(f64::viridis(i / 256.0)).x;
+        CHECK(step > 0.0010); // a mean of 0.0026
+        CHECK(step < 0.0045);
+    }
+}
+
+TEST_CASE("the diverging map is white at zero, even in what is seen, and as strong on both sides") {
+    for (int c = 0; c < 3; ++c) CHECK(f64::diverging(0.0)[c] == Approx(1).margin(1e-3));
+    const dvec3 white = oklab({1, 1, 1});
+    const double whole = glm::distance(oklab(f64::diverging(1.0)), white);
+    CHECK(whole > 0.5);
+    for (int i = 0; i <= 64; ++i) {
+        const double t = i / 64.0;
+        for (const double side : {-1.0, 1.0})
+            CHECK(glm::distance(oklab(f64::diverging(side * t)), white) == Approx(t * whole).margin(0.005));
+        CHECK(oklab(f64::diverging(t)).x == Approx(oklab(f64::diverging(-t)).x).margin(0.005));
+    }
+    CHECK(f64::diverging(1.0).r > f64::diverging(1.0).b);
+    CHECK(f64::diverging(-1.0).b > f64::diverging(-1.0).r);
+}
+
+TEST_CASE("flags that are near in number are far in colour") {
+    for (int i = 0; i < 24; ++i)
+        for (int k = i + 1; k < i + 6; ++k)
+            CHECK(glm::distance(oklab(f64::flagColour(double(i))), oklab(f64::flagColour(double(k)))) > 0.08);
+}
