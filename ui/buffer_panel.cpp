@@ -108,7 +108,7 @@ void BufferPanel::toolbar() {
 
 void BufferPanel::drawViews(ImVec2 size, float pixelsPerUnit) {
     const float em = ImGui::GetFontSize(), gap = 0.5f * em;
-    const size_t columns = count_ > 1 ? 2 : 1, rows = (count_ + 1) / 2;
+    const size_t columns = count_ == 4 || (count_ == 2 && size.x > 1.2f * size.y) ? 2 : 1, rows = count_ / columns;
     const ImVec2 origin = ImGui::GetCursorScreenPos();
     const ImVec2 cell{(size.x - gap * static_cast<float>(columns - 1)) / static_cast<float>(columns),
                       (size.y - gap * static_cast<float>(rows - 1)) / static_cast<float>(rows)};

@@ -244,6 +244,8 @@ BufferView::Events BufferView::draw(Inspector& inspector, ImVec2 size, float pix
         if (pointed_ && !events.pointedAt) drawPlace(corner, *pointed_, unitsPerTexel, IM_COL32_WHITE);
         if (pin_) drawPlace(corner, pin_->texel, unitsPerTexel, ImGui::GetColorU32(colour::accent));
         list.PopClipRect();
+        list.AddRect(corner, {corner.x + area.x, corner.y + area.y},
+                     ImGui::GetColorU32(chosen ? colour::accent : ImGui::GetStyleColorVec4(ImGuiCol_Separator)));
         if (pointed_) texelUnder(inspector, *pointed_);
     } catch (const std::exception& error) { // a shader that does not compile, or no memory for the view
         trouble_ = error.what();
@@ -284,8 +286,8 @@ void BufferView::navigate(Sight& sight, Events& events, ImVec2 corner, ImVec2 si
             const double wanted =
                 std::clamp(sight.magnification * std::pow(1.25, io.MouseWheel), smallestMagnification, largest);
             // What is under the pointer stays there; what fits comes back to the middle.
-            const double ratio = sight.magnification / wanted;
-            sight.centre += fromMiddle / unitsPerTexel / texels * (1 - ratio);
+            const dvec2 anchor = glm::clamp(at, dvec2(0), dvec2(1));
+            sight.centre = anchor + (sight.centre - anchor) * (sight.magnification / wanted);
             sight.magnification = wanted;
             if (wanted <= 1) sight.centre = dvec2(0.5);
         }
@@ -362,12 +364,15 @@ void BufferView::caption(std::optional<ivec2> texel, float width, bool chosen) {
         right -= ImGui::CalcTextSize(line.begin(), line.end()).x;
         list.AddText({right, at.y}, ImGui::GetColorU32(colour::text), line.begin(), line.end());
     }
+    const float room = right - 0.6f * em - at.x;
+    const std::string_view label = picked() ? std::string_view(label_) : "nothing picked";
     const ShortText channel = look_.channel < 0 ? ShortText("rgb") : ShortText("{}", channelName(spec_, look_.channel));
-    const ShortText name("{}{}  {}", frozen_ ? "frozen  " : "", picked() ? std::string_view(label_) : "nothing picked",
-                         picked() ? channel.view() : std::string_view());
-    const ImVec4 clip(at.x, at.y, std::max(right - 0.6f * em, at.x), at.y + ImGui::GetTextLineHeight());
-    list.AddText(ImGui::GetFont(), em, at, ImGui::GetColorU32(chosen ? colour::accent : colour::muted), name.begin(),
-                 name.end(), 0, &clip);
+    const ShortText whole("{}{}  {}", frozen_ ? "frozen: " : "", label, picked() ? channel.view() : std::string_view());
+    const std::string_view own = label.substr(label.rfind('.') + 1); // all of it where there is no dot
+    const std::string_view name = ImGui::CalcTextSize(whole.begin(), whole.end()).x <= room ? whole.view() : own;
+    const ImVec4 clip(at.x, at.y, std::max(at.x + room, at.x), at.y + ImGui::GetTextLineHeight());
+    list.AddText(ImGui::GetFont(), em, at, ImGui::GetColorU32(chosen ? colour::accent : colour::muted), name.data(),
+                 name.data() + name.size(), 0, &clip);
 }
 
 // --- the controls --------------------------------------------------------------------------------------------------
@@ -589,7 +594,7 @@ void BufferView::pinRows() {
     for (int c = first; c < first + channels; ++c)
         for (size_t i = 0; i < pin_->count; ++i)
             if (const float v = value(c, i); std::isfinite(v)) seen = seen ? hull(*seen, {v, v}) : ValueRange{v, v};
-    subtitle(ShortText("Pin, last {} frames", pin_->count).view());
+    subtitle(ShortText("Pin, last {} frames", pinLength).view());
     const ImVec2 from = ImGui::GetCursorScreenPos(), size{ImGui::GetContentRegionAvail().x, 3.2f * em};
     if (size.x < 1) return;
     ImGui::Dummy(size);

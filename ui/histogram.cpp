@@ -105,19 +105,17 @@ bool Histogram::draw(Inspector& inspector, const Statistics& statistics, const L
     if (grab_ != Grab::None || ImGui::IsItemHovered()) ImGui::SetMouseCursor(ImGuiMouseCursor_ResizeEW);
 
     ImDrawList& list = *ImGui::GetWindowDrawList();
-    list.AddRectFilled(from, to, ImGui::GetColorU32(ImGuiCol_FrameBg));
-    drawBars(statistics, from, to);
-    const float low = place(range.min), high = place(range.max);
+    const float low = place(range.min), high = place(range.max), below = to.y + barHeight;
     const ImU32 veil = IM_COL32(20, 20, 22, 150), ink = ImGui::GetColorU32(colour::accent);
+    list.AddRectFilled(from, to, ImGui::GetColorU32(ImGuiCol_FrameBg));
+    for (const float x : {low, high}) list.AddLine({x, from.y}, {x, below}, ink, 0.15f * em);
+    drawBars(statistics, from, to); // over the lines: the ends are often where the peaks are
     list.AddRectFilled(from, {low, to.y}, veil);
     list.AddRectFilled({high, from.y}, to, veil);
     paintBar(inspector, domain, look, channels);
-    list.AddImage(textureId(bar_.name()), {from.x, to.y}, {to.x, to.y + barHeight});
-    const float below = to.y + barHeight;
-    for (const float x : {low, high}) {
-        list.AddLine({x, from.y}, {x, below}, ink, 0.1f * em);
+    list.AddImage(textureId(bar_.name()), {from.x, to.y}, {to.x, below});
+    for (const float x : {low, high})
         list.AddTriangleFilled({x, below - 0.2f * em}, {x + handle, below + handle}, {x - handle, below + handle}, ink);
-    }
     tooltip("How many texels have which value; heights are logarithms of the counts. Drag the ends, or what is "
             "between them, to set the range that the colours cover.");
     return changed;

@@ -22,6 +22,10 @@ constexpr float widthInEms = 4.4f, heightInEms = 2.9f;
 
 } // namespace
 
+ivec2 Thumbnails::cornerOf(size_t cell) const {
+    return ivec2(static_cast<int>(cell) % cellsAcross, static_cast<int>(cell) / cellsAcross) * cellSize_;
+}
+
 void Thumbnails::gather(const Flow& flow) {
     const auto& images = flow.images();
     entries_.clear();
@@ -65,51 +69,48 @@ const std::string* Thumbnails::draw(const Renderer& renderer, Inspector& inspect
         const bool stale = cell.label != entry.label || (cell.frame != frame && ImGui::GetTime() >= cell.next);
         const std::chrono::duration<double> spent = std::chrono::steady_clock::now() - start;
         if (stale && ImGui::IsItemVisible() && spent.count() < secondsPerFrame)
-            paint(renderer, inspector, frame, entry, cell,
-                  ivec2(static_cast<int>(i) % cellsAcross, static_cast<int>(i) / cellsAcross) * cellSize_);
+            paint(renderer, inspector, frame, entry, cell, cornerOf(i));
         ImGui::PopID();
     }
     return picked;
 }
 
 bool Thumbnails::row(const Flow& flow, const Entry& entry, bool chosen, size_t index, float pixelsPerUnit) {
-    const float em = ImGui::GetFontSize(), gap = ImGui::GetStyle().ItemInnerSpacing.x;
-    const ImVec2 at = ImGui::GetCursorScreenPos(), size{widthInEms * em, heightInEms * em};
+    const float em = ImGui::GetFontSize(), gap = ImGui::GetStyle().ItemInnerSpacing.x,
+                line = ImGui::GetTextLineHeight();
     const float width = ImGui::GetContentRegionAvail().x;
-    const bool pressed = ImGui::Selectable("##image", chosen, 0, {0, size.y});
+    const bool narrow = width < 2 * widthInEms * em; // the name below instead of beside
+    const ImVec2 at = ImGui::GetCursorScreenPos(), size{widthInEms * em, heightInEms * em};
+    const bool pressed = ImGui::Selectable("##image", chosen, 0, {0, size.y + (narrow ? line : 0)});
     ImDrawList& list = *ImGui::GetWindowDrawList();
-    list.AddRectFilled(at, {at.x + size.x, at.y + size.y}, IM_COL32(0, 0, 0, 255));
+    const ImVec2 from(std::round(at.x * pixelsPerUnit) / pixelsPerUnit,
+                      std::round(at.y * pixelsPerUnit) / pixelsPerUnit);
+    const ImVec2 to(from.x + static_cast<float>(cellSize_.x) / pixelsPerUnit,
+                    from.y + static_cast<float>(cellSize_.y) / pixelsPerUnit);
+    list.AddRectFilled(from, to, IM_COL32(0, 0, 0, 255));
     if (cells_[index].label == entry.label) {
-        const ivec2 corner =
-            ivec2(static_cast<int>(index) % cellsAcross, static_cast<int>(index) / cellsAcross) * cellSize_;
-        const float w = static_cast<float>(atlas_.extent().width), h = static_cast<float>(atlas_.extent().height);
-        const ImVec2 first(static_cast<float>(corner.x) / w, static_cast<float>(corner.y) / h);
-        const ImVec2 last(static_cast<float>(corner.x + cellSize_.x) / w,
-                          static_cast<float>(corner.y + cellSize_.y) / h);
-        const ImVec2 from(std::round(at.x * pixelsPerUnit) / pixelsPerUnit,
-                          std::round(at.y * pixelsPerUnit) / pixelsPerUnit);
-        list.AddImage(textureId(atlas_.name()), from,
-                      {from.x + static_cast<float>(cellSize_.x) / pixelsPerUnit,
-                       from.y + static_cast<float>(cellSize_.y) / pixelsPerUnit},
-                      first, last);
+        const glm::vec2 all(atlas_.extent().width, atlas_.extent().height);
+        const glm::vec2 low = glm::vec2(cornerOf(index)) / all, high = glm::vec2(cornerOf(index) + cellSize_) / all;
+        list.AddImage(textureId(atlas_.name()), from, to, {low.x, low.y}, {high.x, high.y});
     }
-    if (chosen) list.AddRect(at, {at.x + size.x, at.y + size.y}, ImGui::GetColorU32(colour::accent), 0, 0, 0.12f * em);
+    if (chosen) list.AddRect(from, to, ImGui::GetColorU32(colour::accent), 0, 0, 0.12f * em);
 
     // "a/pcss.shadow-map": the image's own name over that of whom it belongs to.
-    const std::string& label = flow.label(entry.label);
+    const std::string_view label = flow.label(entry.label);
     const size_t dot = label.rfind('.');
-    const std::string_view whole = label, name = dot == std::string::npos ? whole : whole.substr(dot + 1);
-    const std::string_view owner = dot == std::string::npos ? std::string_view() : whole.substr(0, dot);
-    const ImageSpec& spec = flow.spec(entry.image);
-    const float left = at.x + size.x + gap, line = ImGui::GetTextLineHeight();
-    const ImVec4 clip(left, at.y, at.x + width, at.y + size.y);
-    const auto write = [&](float y, ImVec4 ink, std::string_view words) {
-        list.AddText(ImGui::GetFont(), em, {left, y}, ImGui::GetColorU32(ink), words.data(),
-                     words.data() + words.size(), 0, &clip);
+    const std::string_view name = dot == std::string::npos ? label : label.substr(dot + 1);
+    const std::string_view owner = dot == std::string::npos ? std::string_view() : label.substr(0, dot);
+    const ImVec4 clip(at.x, at.y, at.x + width, to.y + line);
+    const auto write = [&](ImVec2 place, ImVec4 ink, std::string_view words) {
+        if (words.empty()) return;
+        list.AddText(ImGui::GetFont(), em, place, ImGui::GetColorU32(ink), words.data(), words.data() + words.size(), 0,
+                     &clip);
     };
-    const float top = at.y + (size.y - 2 * line) / 2;
-    write(top, chosen ? colour::accent : colour::text, name);
-    write(top + line, colour::muted, owner.empty() ? info(spec.format).name : owner);
+    const ImVec2 beside(to.x + gap, at.y + (size.y - (owner.empty() ? 1 : 2) * line) / 2);
+    write(narrow ? ImVec2(at.x, to.y) : beside, chosen ? colour::accent : colour::text, name);
+    if (!narrow) write({beside.x, beside.y + line}, colour::muted, owner);
+
+    const ImageSpec& spec = flow.spec(entry.image);
     tooltip(ShortText("{}\n{}  {}  {}{}{}", label, extentText(spec.extent).view(), info(spec.format).name,
                       bytesText(spec.bytes()).view(), cells_[index].trouble.empty() ? "" : "\n", cells_[index].trouble)
                 .view());

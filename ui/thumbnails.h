@@ -35,6 +35,7 @@ private:
         std::string trouble;
     };
     void gather(const Flow& flow);
+    glm::ivec2 cornerOf(size_t cell) const; // in the atlas
     bool row(const Flow& flow, const Entry& entry, bool chosen, size_t cell, float pixelsPerUnit);
     void paint(const Renderer& renderer, Inspector& inspector, uint64_t frame, const Entry& entry, Cell& cell,
                glm::ivec2 corner);
