@@ -1,12 +1,14 @@
 // SPDX-License-Identifier: MIT
-// Does to a window what xdotool cannot: drops a file on it (the XDND protocol, version 5) and asks it to close as a
-// window manager does.
+// Does with a window what xdotool cannot: drops a file on it (the XDND protocol, version 5), asks it to close as a
+// window manager does, and looks at its pixels.
 //
-//     person drop WINDOW FILE        person close WINDOW
+//     person drop WINDOW FILE        person close WINDOW        person look WINDOW X Y WIDTH HEIGHT
 //
-// Exit status 0 when the window has taken the file or the request was sent.
+// Exit status 0 when the window has taken the file or the request was sent. `look` prints the
+// colours, six hex digits a pixel.
 #include <X11/Xatom.h>
 #include <X11/Xlib.h>
+#include <X11/Xutil.h>
 
 #include <chrono>
 #include <cstdio>
@@ -14,6 +16,7 @@
 #include <cstring>
 #include <string>
 #include <thread>
+#include <vector>
 
 namespace {
 
@@ -38,6 +41,18 @@ public:
         if (!waitFor("XdndStatus")) return false;
         send("XdndDrop", source, 0, CurrentTime);
         return waitFor("XdndFinished");
+    }
+
+    // The pixels of a rectangle, row by row, as 0xrrggbb.
+    std::vector<unsigned long> look(int x, int y, unsigned width, unsigned height) {
+        std::vector<unsigned long> pixels;
+        XImage* image = XGetImage(display_, target_, x, y, width, height, AllPlanes, ZPixmap);
+        if (!image) return pixels;
+        for (int row = 0; row < image->height; ++row)
+            for (int column = 0; column < image->width; ++column)
+                pixels.push_back(XGetPixel(image, column, row) & 0xffffff);
+        XDestroyImage(image);
+        return pixels;
     }
 
 private:
@@ -99,6 +114,14 @@ int main(int argc, char** argv) {
         return 0;
     }
     if (verb == "drop" && argc == 4) return Person(std::strtoul(argv[2], nullptr, 0)).drop(argv[3]) ? 0 : 1;
-    std::fprintf(stderr, "person: drop WINDOW FILE | close WINDOW\n");
+    if (verb == "look" && argc == 7) {
+        const auto number = [&](int i) { return std::atoi(argv[i]); };
+        for (const unsigned long pixel :
+             Person(std::strtoul(argv[2], nullptr, 0))
+                 .look(number(3), number(4), static_cast<unsigned>(number(5)), static_cast<unsigned>(number(6))))
+            std::printf("%06lx\n", pixel);
+        return 0;
+    }
+    std::fprintf(stderr, "person: drop WINDOW FILE | close WINDOW | look WINDOW X Y WIDTH HEIGHT\n");
     return 2;
 }
