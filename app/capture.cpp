@@ -5,11 +5,11 @@
 #include "app/file_io.h"
 #include "app/headless.h"
 #include "app/preset.h"
+#include "renderer/inspect/inspector.h"
 
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
 
 namespace penumbra {
 namespace {
@@ -86,49 +86,39 @@ Picture rawPicture(const Renderer& renderer, const Selection& selection, int lay
     return picture;
 }
 
-// The range to look at a channel in: its own, or that of the finite values that are there.
-std::pair<float, float> viewRange(const Picture& raw, const Channel& channel, std::string_view name) {
-    if (channel.min < channel.max) return {channel.min, channel.max};
-    float least = INFINITY, most = -INFINITY;
-    for (const float value : raw.values)
-        if (std::isfinite(value)) least = std::min(least, value), most = std::max(most, value);
-    if (least > most) least = most = 0;
-    const std::string_view unit = unitName(channel.unit);
-    fmt::print(stderr, "note: black is {:g} and white is {:g}{}{} in the picture of '{}'\n", least, most,
-               unit.empty() ? "" : " ", unit, name);
-    return {least, most};
-}
-
-// Grey from black to white over the range; NaN is magenta, infinite is cyan.
-Picture viewedPicture(const Picture& raw, std::pair<float, float> range) {
-    const float scale = range.second > range.first ? 1 / (range.second - range.first) : 0;
-    Picture picture{raw.width, raw.height, {"R", "G", "B"}};
-    picture.values.reserve(3 * raw.values.size());
-    size_t marked = 0;
-    for (const float value : raw.values) {
-        const float grey = std::clamp((value - range.first) * scale, 0.0f, 1.0f);
-        if (std::isnan(value))
-            picture.values.insert(picture.values.end(), {1, 0, 1});
-        else if (std::isinf(value))
-            picture.values.insert(picture.values.end(), {0, 1, 1});
-        else
-            picture.values.insert(picture.values.end(), {grey, grey, grey});
-        if (!std::isfinite(value)) ++marked;
+// One channel as colours over its stated range, or that of the finite values that are there.
+Picture viewedPicture(Renderer& renderer, const Selection& selection, int layer, int level) {
+    const std::span<const Channel> channels = renderer.flow().spec(selection.image).channels;
+    const Source source{renderer.runner().texture(renderer.flow(), selection.image), channels, layer, level};
+    Inspector inspector(renderer.programs());
+    Look look{.channel = static_cast<int>(selection.channel.value_or(0))};
+    Statistics statistics;
+    for (int turn = 0; turn < Inspector::turns(source); ++turn)
+        inspector.measure(source, look.channel, look.range, turn, statistics);
+    const Channel& channel = channels[static_cast<size_t>(look.channel)];
+    if (channel.min < channel.max) {
+        look.range = {channel.min, channel.max};
+    } else {
+        look.range = nonEmpty(statistics.extremes().value_or(ValueRange{0, 0}));
+        const std::string_view unit = unitName(channel.unit);
+        fmt::print(stderr, "note: black is {:g} and white is {:g}{}{} in the picture of '{}'\n", look.range.min,
+                   look.range.max, unit.empty() ? "" : " ", unit, selection.name);
     }
-    if (marked > 0) fmt::print(stderr, "note: {} pixels are not finite: NaN is magenta, infinite is cyan\n", marked);
-    return picture;
+    if (const int64_t bad = statistics.count(Mark::NaN) + statistics.count(Mark::Infinite); bad > 0)
+        fmt::print(stderr, "note: {} pixels are not finite: NaN is magenta, infinite is cyan\n", bad);
+    return inspector.picture(source, look, {}, source.size());
 }
 
-Picture bufferPicture(const Renderer& renderer, const Selection& selection, const Options& options) {
+Picture bufferPicture(Renderer& renderer, const Selection& selection, const Options& options) {
     const ImageSpec& spec = renderer.flow().spec(selection.image);
     checkRange("--layer", options.layer, spec.extent.layers, selection);
     checkRange("--level", options.level, spec.extent.levels, selection);
-    const Picture raw = rawPicture(renderer, selection, options.layer, options.level);
-    if (pictureFormat(*options.output) != PictureFormat::Png) return raw;
-    if (raw.channels.size() != 1)
+    if (pictureFormat(*options.output) != PictureFormat::Png)
+        return rawPicture(renderer, selection, options.layer, options.level);
+    if (!selection.channel && spec.channels.size() != 1)
         throw InputError(fmt::format("--buffer: a .png shows one channel of '{}'; its channels are {}", selection.name,
                                      fmt::join(channelNames(spec), ", ")));
-    return viewedPicture(raw, viewRange(raw, spec.channels[selection.channel.value_or(0)], selection.name));
+    return viewedPicture(renderer, selection, options.layer, options.level);
 }
 
 // Without --buffer: what the window shows, or for files of floats the light before it is made a display's.

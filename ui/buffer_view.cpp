@@ -663,15 +663,7 @@ BufferShot BufferView::shotAsSeen(Inspector& inspector, const Sight& sight) cons
         window = {window_.left + low.x * window_.texelsPerPixel, window_.top + low.y * window_.texelsPerPixel,
                   window_.texelsPerPixel};
     }
-    const Texture target("ui.shot", Format::RGBA8, {.width = pixels.x, .height = pixels.y});
-    inspector.paint(from, look_, window, target, {0, 0}, pixels);
-    const std::vector<float> rgba = target.read(); // its first row is the upper one
-    BufferShot shot{label_, {pixels.x, pixels.y, {"R", "G", "B"}, {}}, false};
-    shot.picture.values.reserve(rgba.size() / 4 * 3);
-    for (size_t i = 0; i < rgba.size(); i += 4)
-        shot.picture.values.insert(shot.picture.values.end(), rgba.begin() + static_cast<ptrdiff_t>(i),
-                                   rgba.begin() + static_cast<ptrdiff_t>(i + 3));
-    return shot;
+    return {label_, inspector.picture(from, look_, window, pixels), false};
 }
 
 BufferShot BufferView::shotRaw(Inspector& inspector) const {

@@ -77,6 +77,17 @@ void Inspector::paint(const Source& source, const Look& look, const ImageWindow&
     dispatch(paint, source, block, groups(size.x, 8), groups(size.y, 8));
 }
 
+Picture Inspector::picture(const Source& source, const Look& look, const ImageWindow& window, ivec2 size) {
+    const Texture target("inspect.picture", Format::RGBA8, {.width = size.x, .height = size.y});
+    paint(source, look, window, target, {0, 0}, size);
+    const std::vector<float> rgba = target.read(); // its first row is the upper one
+    Picture picture{size.x, size.y, {"R", "G", "B"}, {}};
+    picture.values.reserve(rgba.size() / 4 * 3);
+    for (auto texel = rgba.begin(); texel != rgba.end(); texel += 4)
+        picture.values.insert(picture.values.end(), texel, texel + 3);
+    return picture;
+}
+
 std::optional<ValueRange> Inspector::range(const Source& source, int channel) {
     const DebugGroup group("inspect.sample");
     const ivec2 size = source.size(), cells = glm::min(size, ivec2(sampleSide));

@@ -3,6 +3,7 @@
 // results are read back. Texels are counted from the upper left corner, rows downwards.
 #pragma once
 
+#include "renderer/core/picture.h"
 #include "renderer/gl/buffer.h"
 #include "renderer/gl/program.h"
 #include "renderer/gl/texture.h"
@@ -29,6 +30,10 @@ public:
     // first row becomes the upper one.
     void paint(const Source& source, const Look& look, const ImageWindow& window, const Texture& target,
                glm::ivec2 corner, glm::ivec2 size);
+
+    // What `window` shows in a picture of its own, upper row first: R, G and B in [0, 1], black outside of the image.
+    // Stalls.
+    Picture picture(const Source& source, const Look& look, const ImageWindow& window, glm::ivec2 size);
 
     // The automatic range of a channel (−1: of the first three), from at most 16384 texels spread over the image; none
     // without finite values. Stalls.
