@@ -11,6 +11,8 @@ namespace {
 // In font heights:
 constexpr float listWidth = 12.5f, narrowListWidth = 5.6f, controlsWidth = 17, narrowPanel = 46;
 
+constexpr double measuringShare = 0.1; // of the time: measuring stalls the renderer
+
 } // namespace
 
 std::optional<BufferShot> BufferPanel::draw(Renderer& renderer, uint64_t frame, float pixelsPerUnit) {
@@ -24,8 +26,10 @@ std::optional<BufferShot> BufferPanel::draw(Renderer& renderer, uint64_t frame, 
     const std::string* picked = thumbnails_.draw(renderer, *inspector_, frame, views_[chosen_].label(), pixelsPerUnit);
     ImGui::EndChild();
     pick(renderer, picked);
-    for (size_t i = 0; i < count_; ++i)
-        present_[i] = views_[i].picked() && views_[i].update(renderer, *inspector_, frame);
+    for (size_t i = 0; i < mostViews; ++i) {
+        present_[i] = i < count_ && views_[i].update(renderer, *inspector_, frame, measuringShare / count_);
+        if (!present_[i]) views_[i].hide();
+    }
 
     ImGui::SameLine();
     ImGui::BeginChild("views", {std::max(ImGui::GetContentRegionAvail().x - controls - gap, 1.0f), 0}, false,

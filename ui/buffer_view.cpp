@@ -12,11 +12,8 @@ using glm::ivec2;
 
 namespace {
 
-// Measuring stalls the renderer.
-constexpr double shortestInterval = 0.25; // [s]
-constexpr double measuringShare = 0.1;
-
-constexpr float texelForValues = 4.6f; // font heights that a texel must be wide for its value to be printed
+constexpr double shortestInterval = 0.25; // between two measurings [s]
+constexpr float texelForValues = 4.6f;    // font heights that a texel must be wide for its value to be printed
 constexpr double smallestMagnification = 0.25, largestTexel = 256; // [pixels]
 
 constexpr std::string_view colourNames[] = {"r", "g", "b", "a"};
@@ -43,12 +40,10 @@ ShortText countText(int64_t count) {
     return ShortText("{} {:03} {:03}", count / 1000000, count / 1000 % 1000, count % 1000);
 }
 
-// In black on white or white on black.
-void outlinedText(ImDrawList& list, ImVec2 at, std::string_view line) {
-    const float d = std::max(std::round(ImGui::GetFontSize() / 15), 1.0f);
-    const ImU32 dark = IM_COL32(0, 0, 0, 200);
-    for (const ImVec2 shift : {ImVec2(-d, 0), ImVec2(d, 0), ImVec2(0, -d), ImVec2(0, d)})
-        list.AddText({at.x + shift.x, at.y + shift.y}, dark, line.data(), line.data() + line.size());
+// White on a dark plate: it lies on any colour.
+void plateText(ImDrawList& list, ImVec2 at, std::string_view line, ImVec2 size) {
+    const float margin = 0.2f * ImGui::GetFontSize();
+    list.AddRectFilled({at.x - margin, at.y}, {at.x + size.x + margin, at.y + size.y}, IM_COL32(0, 0, 0, 150), margin);
     list.AddText(at, IM_COL32_WHITE, line.data(), line.data() + line.size());
 }
 
@@ -100,7 +95,7 @@ Source BufferView::source() const {
     return {frozen_ ? frozen_->texture : *texture_, spec_.channels, layer_, level_, sample_};
 }
 
-bool BufferView::update(const Renderer& renderer, Inspector& inspector, uint64_t frame) {
+bool BufferView::update(const Renderer& renderer, Inspector& inspector, uint64_t frame, double share) {
     const std::optional<Image> image = renderer.flow().find(label_);
     if (freeze_ && !frozen_ && image) try {
             frozen_ = {renderer.runner().texture(renderer.flow(), *image).copy("ui.frozen"), frame};
@@ -123,7 +118,7 @@ bool BufferView::update(const Renderer& renderer, Inspector& inspector, uint64_t
     if (channels < 3) look_.channel = std::max(look_.channel, 0);
     version_ = {frozen_ ? frozen_->frame : frame, &source().texture, layer_, level_, sample_};
     try {
-        measure(inspector);
+        measure(inspector, share);
         followPin(inspector);
         trouble_.clear();
     } catch (const std::exception& error) { // a shader that does not compile
@@ -132,7 +127,7 @@ bool BufferView::update(const Renderer& renderer, Inspector& inspector, uint64_t
     return true;
 }
 
-void BufferView::measure(Inspector& inspector) {
+void BufferView::measure(Inspector& inspector, double share) {
     const double now = ImGui::GetTime();
     const Source from = source();
     const bool again = !measured_ || (version_ != *measured_ && now >= nextMeasuring_);
@@ -145,7 +140,7 @@ void BufferView::measure(Inspector& inspector) {
         turn_ = 1;
         measured_ = version_;
         const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-        nextMeasuring_ = now + std::max(shortestInterval, seconds / measuringShare);
+        nextMeasuring_ = now + std::max(shortestInterval, seconds / share);
     } else if (version_ == *measured_ && turn_ < Inspector::turns(from)) {
         inspector.measure(from, look_.channel, statistics_.domain, turn_++, statistics_);
     }
@@ -331,9 +326,9 @@ void BufferView::printValues(Inspector& inspector, ImVec2 corner, ImVec2 size, d
             for (int i = 0; i < lines; ++i) {
                 const float value = values[shownFirst + i];
                 const ShortText number = std::isfinite(value) ? ShortText("{:.4g}", value) : valueText(value, {});
-                const float width = ImGui::CalcTextSize(number.begin(), number.end()).x;
-                outlinedText(list, {middle.x - width / 2, middle.y + (static_cast<float>(i) - 0.5f * lines) * line},
-                             number.view());
+                const ImVec2 size = ImGui::CalcTextSize(number.begin(), number.end());
+                plateText(list, {middle.x - size.x / 2, middle.y + (static_cast<float>(i) - 0.5f * lines) * line},
+                          number.view(), size);
             }
         }
 }
@@ -412,7 +407,10 @@ void BufferView::imageRows() {
     const auto whole = [&](const char* label, const char* id, int& value, int count, std::string_view help) {
         if (count <= 1) return;
         row(label);
-        if (ImGui::SliderInt(id, &value, 0, count - 1, "%d", ImGuiSliderFlags_AlwaysClamp)) measured_.reset();
+        if (ImGui::SliderInt(id, &value, 0, count - 1, "%d", ImGuiSliderFlags_AlwaysClamp)) {
+            measured_.reset();
+            if (pin_) pin_->count = 0;
+        }
         tooltip(help);
     };
     whole("Layer", "##layer", layer_, extent.layers, "Which image of the array");
@@ -443,19 +441,20 @@ void BufferView::rangeRows(Inspector& inspector) {
     bool typed = histogram_.draw(inspector, statistics_, look_, spec_.channels, edited);
     const float gap = ImGui::GetStyle().ItemInnerSpacing.x;
     const float half = (ImGui::GetContentRegionAvail().x - gap) / 2;
-    const auto end = [&](const char* id, float& value, std::string_view help) {
+    const auto end = [&](const char* id, float& value, float& entered, std::string_view help) {
         ImGui::SetNextItemWidth(half);
-        float entered = value;
-        ImGui::InputFloat(id, &entered, 0, 0, "%.5g");
-        if (ImGui::IsItemDeactivatedAfterEdit() && std::isfinite(entered) && entered != value) {
+        float number = value;
+        if (ImGui::InputFloat(id, &number, 0, 0, "%.5g")) entered = number;
+        if (ImGui::IsItemActivated()) entered = value;
+        if (ImGui::IsItemDeactivatedAfterEdit() && std::isfinite(entered)) {
             value = entered;
             typed = true;
         }
         tooltip(help);
     };
-    end("##low", edited.min, "The value at the dark end of the colours");
+    end("##low", edited.min, entered_[0], "The value at the dark end of the colours");
     ImGui::SameLine(0, gap);
-    end("##high", edited.max, "The value at the bright end of the colours");
+    end("##high", edited.max, entered_[1], "The value at the bright end of the colours");
     if (typed && edited.min > edited.max) std::swap(edited.min, edited.max);
     if (typed) {
         mode_ = RangeMode::Typed;
@@ -483,7 +482,11 @@ void BufferView::rangeRows(Inspector& inspector) {
 }
 
 void BufferView::markRows(Sight& sight) {
-    subtitle("Marked texels");
+    subtitle(statistics_.complete()
+                 ? std::string_view("Marked texels")
+                 : ShortText("Marked in {:.0f} % of the texels",
+                             100.0 * statistics_.measured.looked / static_cast<double>(statistics_.texels()))
+                       .view());
     const float em = ImGui::GetFontSize();
     const bool stated = hasStatedRange(spec_, look_.channel);
     ImGui::PushStyleVar(ImGuiStyleVar_FramePadding, ImVec2(ImGui::GetStyle().FramePadding.x, 0.1f * em));
@@ -532,11 +535,6 @@ void BufferView::markRows(Sight& sight) {
         wrappedText(colour::warning, ShortText("{} texels are NaN or infinite in a channel that is not shown",
                                                countText(statistics_.measured.elsewhere).view())
                                          .view());
-    if (!statistics_.complete())
-        text(colour::muted,
-             ShortText("of {:.0f} % of the texels", 100.0 * statistics_.measured.looked /
-                                                        static_cast<double>(std::max<int64_t>(statistics_.texels(), 1)))
-                 .view());
 }
 
 void BufferView::valueTable() {

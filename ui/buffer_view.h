@@ -41,9 +41,12 @@ public:
     bool picked() const { return !label_.empty(); }
     bool frozen() const { return frozen_.has_value(); }
 
-    // Finds the image in the frame that was rendered last, and looks into it again if it is another one: at most four
-    // times a second, and at most a tenth of the time. The same `frame`, the same images. False: it is not there.
-    bool update(const Renderer& renderer, Inspector& inspector, uint64_t frame);
+    // Finds the image in the frame that was rendered last, and measures it again if it is another one: at most four
+    // times a second, and at most for this share of the time. The same `frame`, the same images. False: it is not
+    // there.
+    bool update(const Renderer& renderer, Inspector& inspector, uint64_t frame, double share);
+    // Nothing is known of the frame until the next update.
+    void hide() { texture_ = nullptr; }
 
     struct Events {
         bool touched = false;                // pressed or scrolled
@@ -86,7 +89,7 @@ private:
     };
 
     Source source() const;
-    void measure(Inspector& inspector);
+    void measure(Inspector& inspector, double share);
     void settleRange();
     void followPin(Inspector& inspector);
     const float* texelUnder(Inspector& inspector, glm::ivec2 texel);
@@ -117,8 +120,8 @@ private:
     int layer_ = 0, level_ = 0, sample_ = 0;
     Look look_;
     RangeMode mode_ = RangeMode::Automatic;
-    ValueRange typed_;
-    ValueRange automatic_;
+    ValueRange typed_, automatic_;
+    std::array<float, 2> entered_{}; // into the fields of the range, until they are left
     Statistics statistics_;
     Histogram histogram_;
     std::optional<Version> measured_; // what the statistics are of; none: look at once

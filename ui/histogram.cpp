@@ -109,9 +109,10 @@ bool Histogram::draw(Inspector& inspector, const Statistics& statistics, const L
     const ImU32 veil = IM_COL32(20, 20, 22, 150), ink = ImGui::GetColorU32(colour::accent);
     list.AddRectFilled(from, to, ImGui::GetColorU32(ImGuiCol_FrameBg));
     for (const float x : {low, high}) list.AddLine({x, from.y}, {x, below}, ink, 0.15f * em);
-    drawBars(statistics, from, to); // over the lines: the ends are often where the peaks are
-    list.AddRectFilled(from, {low, to.y}, veil);
-    list.AddRectFilled({high, from.y}, to, veil);
+    drawBars(statistics, from, to);  // over the lines: the ends are often where the peaks are
+    const float beside = 0.15f * em; // what lies at an end belongs to the range
+    if (low - beside > from.x) list.AddRectFilled(from, {low - beside, to.y}, veil);
+    if (high + beside < to.x) list.AddRectFilled({high + beside, from.y}, to, veil);
     paintBar(inspector, domain, look, channels);
     list.AddImage(textureId(bar_.name()), {from.x, to.y}, {to.x, below});
     for (const float x : {low, high})

@@ -100,6 +100,14 @@ TEST_CASE("every variant of every shader is valid GLSL 4.50 for glslangValidator
     moving.time = 0.1;
     forEachStage(moving, validate);
     CHECK(shaders.contains("pose.glsl"));
+    for (const char* shader :
+         {"inspect/paint.glsl", "inspect/sample.glsl", "inspect/measure.glsl", "inspect/copy.glsl"})
+        for (const Defines& defines :
+             {Defines{}, Defines{{"CHANNELS", 3}}, Defines{{"ARRAY"}}, Defines{{"MULTISAMPLED"}}}) {
+            ProgramText text;
+            assemble(shaderFolder(), ProgramKind::Compute, shader, defines, {}, text);
+            validate(text.stages[0], shader);
+        }
     CHECK(seen.size() > 20);
 }
 

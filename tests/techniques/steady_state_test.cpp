@@ -81,12 +81,14 @@ TEST_CASE("looking into buffers allocates nothing per frame either") {
         };
         // On the image, with a pinned texel, far enough in for values to be printed.
         for (const bool pressed : {false, true, false}) frame(450, 320, pressed);
+        const int verticesBefore = ImGui::GetDrawData()->TotalVtxCount;
         for (int i = 0; i < 24; ++i) {
             io.MouseWheel = 1;
             frame(450, 320, false);
         }
         io.MouseWheel = 0;
         for (int i = 0; i < 8; ++i) frame(450 + static_cast<float>(i % 2), 320, false);
+        CHECK(ImGui::GetDrawData()->TotalVtxCount > verticesBefore + 500); // the values
         allocations = 0;
         counting = true;
         for (int i = 0; i < 4; ++i) frame(450 + static_cast<float>(i % 2), 320, false);

@@ -8,7 +8,7 @@ source "$(dirname "${BASH_SOURCE[0]}")/person.sh"
 scene_depth="100 365" scene_normal="100 414" shadow_map="100 587" shadow="100 663"
 two_views="260 328" linked="426 328" fit="330 328"
 freeze="625 370" save_png="700 370" save_exr="768 370" channel_list="775 398" colour_list="775 427"
-low_end="614 505" automatic="617 558"
+low_end="614 505" low_field="655 528" automatic="617 558"
 middle="403 538" # of the view
 
 press() { xdotool mousemove $1 $2 sleep 0.1 mousedown "${3:-1}" sleep 0.1 mouseup "${3:-1}" sleep "${4:-0.3}"; }
@@ -53,10 +53,15 @@ differ "$plain" "$again" && fail "the same image looks different"
 drag $low_end 720 505
 narrowed=$(seen "after dragging the range")
 differ "$plain" "$narrowed" || fail "dragging the histogram's lower end changed nothing"
+press $low_field
+xdotool key ctrl+a sleep 0.1 type 0.25
+xdotool key Tab sleep 0.5
+typed=$(seen "after typing an end of the range")
+differ "$narrowed" "$typed" || fail "typing an end of the range changed nothing"
 press $colour_list
 press 775 475
 mapped=$(seen "in other colours")
-differ "$narrowed" "$mapped" || fail "another colour map looks the same"
+differ "$typed" "$mapped" || fail "another colour map looks the same"
 
 xdotool mousemove $middle
 for _ in $(seq 12); do xdotool click 4 sleep 0.05; done
