@@ -326,9 +326,9 @@ void BufferView::printValues(Inspector& inspector, ImVec2 corner, ImVec2 size, d
             for (int i = 0; i < lines; ++i) {
                 const float value = values[shownFirst + i];
                 const ShortText number = std::isfinite(value) ? ShortText("{:.4g}", value) : valueText(value, {});
-                const ImVec2 size = ImGui::CalcTextSize(number.begin(), number.end());
-                plateText(list, {middle.x - size.x / 2, middle.y + (static_cast<float>(i) - 0.5f * lines) * line},
-                          number.view(), size);
+                const ImVec2 lineSize = ImGui::CalcTextSize(number.begin(), number.end());
+                plateText(list, {middle.x - lineSize.x / 2, middle.y + (static_cast<float>(i) - 0.5f * lines) * line},
+                          number.view(), lineSize);
             }
         }
 }
