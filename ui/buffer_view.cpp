@@ -356,8 +356,12 @@ void BufferView::caption(std::optional<ivec2> texel, float width, bool chosen) {
         const ShortText number =
             look_.channel < 0 ? ShortText("{:.4g}  {:.4g}  {:.4g}", v[0], v[1], v[2]) : valueText(*v, unit);
         const ShortText line("{}, {}   {}", texel->x, texel->y, number.view());
-        right -= ImGui::CalcTextSize(line.begin(), line.end()).x;
-        list.AddText({right, at.y}, ImGui::GetColorU32(colour::text), line.begin(), line.end());
+        const auto widthOf = [](std::string_view words) {
+            return ImGui::CalcTextSize(words.data(), words.data() + words.size()).x;
+        };
+        const std::string_view shown = widthOf(line.view()) <= width ? line.view() : number.view();
+        right -= widthOf(shown);
+        list.AddText({right, at.y}, ImGui::GetColorU32(colour::text), shown.data(), shown.data() + shown.size());
     }
     const float room = right - 0.6f * em - at.x;
     const std::string_view label = picked() ? std::string_view(label_) : "nothing picked";
