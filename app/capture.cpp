@@ -4,7 +4,7 @@
 #include "app/command_line.h"
 #include "app/file_io.h"
 #include "app/headless.h"
-#include "app/preset.h"
+#include "app/image_file.h"
 #include "renderer/inspect/inspector.h"
 
 #include <fmt/format.h>
@@ -109,90 +109,70 @@ Picture viewedPicture(Renderer& renderer, const Selection& selection, int layer,
     return inspector.picture(source, look, {}, source.size());
 }
 
-Picture bufferPicture(Renderer& renderer, const Selection& selection, const Options& options) {
+Picture bufferPicture(Renderer& renderer, const Shot& shot, PictureFormat format) {
+    const Selection selection = select(renderer, shot.buffer);
     const ImageSpec& spec = renderer.flow().spec(selection.image);
-    checkRange("--layer", options.layer, spec.extent.layers, selection);
-    checkRange("--level", options.level, spec.extent.levels, selection);
-    if (pictureFormat(*options.output) != PictureFormat::Png)
-        return rawPicture(renderer, selection, options.layer, options.level);
+    checkRange("--layer", shot.layer, spec.extent.layers, selection);
+    checkRange("--level", shot.level, spec.extent.levels, selection);
+    if (format != PictureFormat::Png) return rawPicture(renderer, selection, shot.layer, shot.level);
     if (!selection.channel && spec.channels.size() != 1)
         throw InputError(fmt::format("--buffer: a .png shows one channel of '{}'; its channels are {}", selection.name,
                                      fmt::join(channelNames(spec), ", ")));
-    return viewedPicture(renderer, selection, options.layer, options.level);
+    return viewedPicture(renderer, selection, shot.layer, shot.level);
 }
 
 // Without --buffer: what the window shows, or for files of floats the light before it is made a display's.
-Picture framePicture(const Renderer& renderer, const Options& options) {
-    if (pictureFormat(*options.output) == PictureFormat::Png) return displayPicture(renderer);
+Picture framePicture(const Renderer& renderer, PictureFormat format) {
+    if (format == PictureFormat::Png) return rawPicture(renderer, {"display", renderer.display(), std::nullopt}, 0, 0);
     const std::string_view linear = renderer.flow().find("lit") ? "lit" : "shadow";
     return rawPicture(renderer, select(renderer, linear), 0, 0);
 }
 
-void renderFrames(Renderer& renderer, Session& session, const Options& options) {
-    const double start = session.time;
-    for (int i = 0; i < options.frames; ++i) {
+void renderFrames(Renderer& renderer, Session& session, const Shot& shot) {
+    const double end = session.time;
+    for (int i = 0; i < shot.frames; ++i) {
+        // Without history nothing is left of a frame but what moved since the one before.
+        if (i == 1 && renderer.flow().pasts().empty()) i = std::max(i, shot.frames - 2);
         session.frame = static_cast<uint32_t>(i);
-        session.time = start + i * session.timeStep;
+        session.time = std::max(end - (shot.frames - 1 - i) * session.timeStep, 0.0);
         renderer.render(session);
-        if (i == 0 && options.buffer) select(renderer, *options.buffer); // before the other frames take their time
+        if (i == 0 && !shot.buffer.empty()) select(renderer, shot.buffer); // before the other frames take their time
     }
 }
 
-void printResult(const Options& options, const Picture& picture, const Facts& facts) {
+void printResult(const Options& options, const Picture& picture, const Json& facts) {
     if (!options.json) {
         fmt::print("{}: {}x{} {}\n", *options.output, picture.width, picture.height, fmt::join(picture.channels, " "));
         return;
     }
-    nlohmann::ordered_json json = {{"file", *options.output},
-                                   {"width", picture.width},
-                                   {"height", picture.height},
-                                   {"channels", picture.channels}};
-    for (const auto& [key, text] : facts) json[key] = text;
-    fmt::print("{}\n", json.dump(2, ' ', false, nlohmann::json::error_handler_t::replace));
+    Json json = {{"file", *options.output},
+                 {"width", picture.width},
+                 {"height", picture.height},
+                 {"channels", picture.channels}};
+    json.update(facts);
+    fmt::print("{}\n", json.dump(2, ' ', false, Json::error_handler_t::replace));
 }
 
 } // namespace
 
-Facts factsOf(const Session& session, const std::string& driver) {
-    const auto point = [](glm::vec3 p) { return fmt::format("{},{},{}", p.x, p.y, p.z); };
-    const Camera& camera = session.camera;
-    const AreaLight& light = session.light;
-    const bool square = light.shape != LightShape::Rectangle;
-    return {
-        {"Software", "Penumbra " PENUMBRA_VERSION},
-        {"scene", session.scene->name},
-        {"technique", std::string(session.techniques.card().id)},
-        {"parameters", presetOf(session.techniques)["parameters"].dump()},
-        {"camera", fmt::format("{},{},{}", point(camera.eye), point(camera.target), camera.fovY)},
-        {"light", fmt::format("{},{}", point(light.position), point(light.target))},
-        {"light-shape", std::string(lightShapeNames()[static_cast<size_t>(light.shape)])},
-        {"light-size", square ? fmt::format("{}", light.size.x) : fmt::format("{},{}", light.size.x, light.size.y)},
-        {"ground", session.ground ? "on" : "off"},
-        {"time", fmt::format("{}", session.time)},
-        {"seed", fmt::format("{}", session.seed)},
-        {"size", fmt::format("{}x{}", session.size.x, session.size.y)},
-        {"driver", driver},
-    };
-}
-
-Picture displayPicture(const Renderer& renderer) {
-    return rawPicture(renderer, {"display", renderer.display(), std::nullopt}, 0, 0);
-}
-
 void capture(const Options& options) {
-    pictureFormat(*options.output); // an unknown ending is refused
+    const PictureFormat format = pictureFormat(*options.output); // an unknown ending is refused
     checkWritable(*options.output);
-    Session session = makeSession(options);
-    if (options.buffer == "shadow") session.display.show = Show::Shadow; // nothing needs to be lit
+    Shot shot;
+    Session session = makeSession(options, shot);
+    if (shot.panels) fmt::print(stderr, "note: the window's panels are left out\n");
+    shot.panels = false;
 
     const HeadlessContext context;
     Renderer renderer;
-    renderFrames(renderer, session, options);
-    const Picture picture = options.buffer ? bufferPicture(renderer, select(renderer, *options.buffer), options)
-                                           : framePicture(renderer, options);
-    Facts facts = factsOf(session, renderer.driver());
-    facts.push_back({"frames", fmt::format("{}", options.frames)});
-    if (options.buffer) facts.push_back({"buffer", *options.buffer});
+    const Json facts = factsOf(session, shot, renderer.driver());
+    if (options.like)
+        if (const std::string doubt = PictureFacts(*options.like).doubtAboutDriver(renderer.driver()); !doubt.empty())
+            fmt::print(stderr, "note: {}\n", doubt);
+    if (shot.buffer == "shadow") session.display.show = Show::Shadow; // nothing needs to be lit
+    renderFrames(renderer, session, shot);
+    const Picture picture =
+        shot.buffer.empty() ? framePicture(renderer, format) : bufferPicture(renderer, shot, format);
     writePicture(*options.output, picture, facts);
     for (const std::string& message : context.messages()) fmt::print(stderr, "note: OpenGL: {}\n", message);
     printResult(options, picture, facts);

@@ -86,6 +86,7 @@ struct ValueOption {
 
 constexpr ValueOption commonOptions[] = {
     {"--technique", "ID", "shadow technique; 'penumbra list' names them", &Options::technique},
+    {"--like", "PICTURE", "everything as in a .png or .exr of ours; other options override it", &Options::like},
     {"--preset", "NAME|FILE", "technique and parameters from a preset", &Options::preset},
     {"--size", "WxH", "size of the picture in pixels", &Options::size},
     {"--seed", "N", "start of the random sequences", &Options::seed},
@@ -117,7 +118,7 @@ struct CountOption {
     const char* name;
     const char* help;
     int min, max;
-    int Options::*member;
+    std::optional<int> Options::*member;
 };
 
 constexpr CountOption frameOption = {"--frames", "number of frames; the last one is the result", 1, 1000000,
@@ -235,25 +236,31 @@ void placeLight(AreaLight& light, const Options& options) {
 }
 
 void adjustDisplay(DisplaySettings& display, const Options& options) {
-    static constexpr std::string_view shows[] = {"lit", "shadow"};
-    if (options.show) display.show = static_cast<Show>(nameOption("--show", *options.show, shows));
+    if (options.show) display.show = static_cast<Show>(nameOption("--show", *options.show, showNames()));
     display.exposure =
         static_cast<float>(realOption("--exposure", options.exposure, limits::exposure, display.exposure));
     display.ambient = static_cast<float>(realOption("--ambient", options.ambient, limits::ambient, display.ambient));
 }
 
 // A listing needs a scene only if one was named.
-std::shared_ptr<const Scene> openScene(const Options& options) {
+std::shared_ptr<const Scene> openScene(const Options& options, const std::optional<PictureFacts>& like) {
     auto scene = std::make_shared<Scene>();
-    if (!options.scene && options.verb == Verb::List) {
+    if (!options.scene && !like && options.verb == Verb::List) {
         scene->materials.emplace_back();
         return scene;
     }
     const std::vector<std::string> builtIn = builtInScenes();
-    if (!options.scene && builtIn.empty()) throw InputError("there are no built-in scenes; name a .gltf or .glb file");
-    *scene = importGltf(findScene(options.scene ? *options.scene : builtIn[0]),
-                        {options.sceneName.value_or(""), options.variant.value_or("")});
+    if (!options.scene && !like && builtIn.empty())
+        throw InputError("there are no built-in scenes; name a .gltf or .glb file");
+    const bool fromPicture = like && !options.scene;
+    ImportChoice choice = fromPicture ? like->choice() : ImportChoice();
+    if (options.sceneName) choice.scene = *options.sceneName;
+    if (options.variant) choice.variant = *options.variant;
+    *scene = importGltf(fromPicture ? like->scene() : findScene(options.scene ? *options.scene : builtIn[0]), choice);
     for (const std::string& note : scene->notes) fmt::print(stderr, "note: {}\n", note);
+    if (fromPicture)
+        if (const std::string doubt = like->doubtAboutScene(*scene); !doubt.empty())
+            fmt::print(stderr, "note: {}\n", doubt);
     return scene;
 }
 
@@ -295,9 +302,16 @@ std::optional<Options> parseCommandLine(int argc, const char* const* argv) {
     return options;
 }
 
-Session makeSession(const Options& options) {
+Session makeSession(const Options& options, Shot& shot) {
+    std::optional<PictureFacts> like;
+    if (options.like) like.emplace(*options.like);
     Session session;
-    session.setScene(openScene(options));
+    session.setScene(openScene(options, like));
+    if (like) shot = like->restore(session);
+    if (options.frames) shot.frames = *options.frames;
+    if (options.buffer) shot.buffer = *options.buffer;
+    if (options.layer) shot.layer = *options.layer;
+    if (options.level) shot.level = *options.level;
     if (options.preset) loadPreset(findPreset(*options.preset), session.techniques);
     if (options.technique) session.techniques.choose(*options.technique);
     for (const std::string& assignment : options.assignments) session.techniques.assign(assignment);
@@ -309,8 +323,9 @@ Session makeSession(const Options& options) {
     if (options.size) session.size = parseSize(*options.size);
     adjustDisplay(session.display, options);
     if (options.clip) session.clip = session.scene->findClip(*options.clip);
-    session.time = realOption("--time", options.time, limits::seconds, session.time);
     if (options.play) session.timeStep = 1.0 / 60;
+    if (options.time || !like)
+        session.time = realOption("--time", options.time, limits::seconds, 0) + (shot.frames - 1) * session.timeStep;
     if (options.seed) {
         constexpr uint32_t largest = std::numeric_limits<uint32_t>::max();
         session.seed = static_cast<uint32_t>(integerOption("--seed", *options.seed, 0, largest));

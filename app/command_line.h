@@ -2,7 +2,7 @@
 // From the words of the command line to a session.
 #pragma once
 
-#include "renderer/session.h"
+#include "app/session_facts.h"
 
 #include <optional>
 #include <string>
@@ -16,14 +16,14 @@ enum class Verb { Window, Capture, List };
 // The command line as it was written. Empty options were not given.
 struct Options {
     Verb verb = Verb::Window;
-    std::optional<std::string> scene, sceneName, variant, clip;
+    std::optional<std::string> scene, like, sceneName, variant, clip;
     std::optional<std::string> technique, preset, size, seed;
     std::vector<std::string> assignments; // --set
     std::optional<std::string> camera, light, lightShape, lightSize, ground;
     std::optional<std::string> time, show, exposure, ambient, textureLimit;
     std::optional<std::string> output, buffer; // capture
-    int frames = 1;
-    int layer = 0, level = 0; // of the buffer
+    std::optional<int> frames;
+    std::optional<int> layer, level; // of the buffer
     bool play = false;
     bool json = false;
 };
@@ -31,7 +31,8 @@ struct Options {
 // Throws InputError. Nothing if the command line asked for help or the version, which is printed.
 std::optional<Options> parseCommandLine(int argc, const char* const* argv);
 
-// In this order: scene with its own camera and light, preset, technique, parameters, the rest. Throws InputError.
-Session makeSession(const Options& options);
+// In this order: scene with its own camera and light, the picture to be like, preset, technique, parameters, the rest.
+// The session's time is that of the last frame of `shot`. Throws InputError.
+Session makeSession(const Options& options, Shot& shot);
 
 } // namespace penumbra

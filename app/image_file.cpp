@@ -14,6 +14,7 @@
 #include <csetjmp>
 #include <cstdlib>
 #include <cstring>
+#include <fstream>
 #include <numeric>
 
 namespace penumbra {
@@ -22,6 +23,10 @@ namespace {
 namespace fs = std::filesystem;
 
 static_assert(std::endian::native == std::endian::little, "PFM and NPY are written as the floats lie in memory");
+
+constexpr std::string_view factsName = "penumbra"; // of the text chunk; before a dot, of the attributes
+
+std::string textOf(const Json& json) { return json.dump(-1, ' ', false, Json::error_handler_t::replace); }
 
 void appendFloats(std::string& bytes, const float* values, size_t count) {
     bytes.append(reinterpret_cast<const char*>(values), count * sizeof(float));
@@ -65,7 +70,7 @@ bool runPngJob(PngJob& job) {
     return true;
 }
 
-std::string encodePng(const fs::path& file, const Picture& picture, const Facts& facts) {
+std::string encodePng(const fs::path& file, const Picture& picture, const Json& facts) {
     const size_t channels = picture.channels.size();
     ensure(channels == 1 || channels == 3 || channels == 4, "a PNG is grey, RGB or RGBA");
     std::vector<png_byte> texels(picture.values.size());
@@ -78,11 +83,13 @@ std::string encodePng(const fs::path& file, const Picture& picture, const Facts&
                                : PNG_COLOR_TYPE_RGB_ALPHA};
     for (int y = 0; y < picture.height; ++y)
         job.rows.push_back(texels.data() + static_cast<size_t>(y) * static_cast<size_t>(picture.width) * channels);
-    for (const auto& [key, text] : facts) {
+    std::string key(factsName), text;
+    if (!facts.is_null()) {
+        text = textOf(facts);
         png_text chunk = {};
         chunk.compression = PNG_ITXT_COMPRESSION_NONE; // UTF-8
-        chunk.key = const_cast<char*>(key.c_str());    // libpng copies it
-        chunk.text = const_cast<char*>(text.c_str());
+        chunk.key = key.data();                        // libpng copies both
+        chunk.text = text.data();
         chunk.itxt_length = text.size();
         job.texts.push_back(chunk);
     }
@@ -90,9 +97,51 @@ std::string encodePng(const fs::path& file, const Picture& picture, const Facts&
     return std::move(job.bytes);
 }
 
+struct PngTextJob {
+    std::ifstream stream;
+    std::string text; // of the chunk of facts
+    std::string error;
+};
+
+void pngTextError(png_structp png, png_const_charp message) {
+    static_cast<PngTextJob*>(png_get_error_ptr(png))->error = message;
+    png_longjmp(png, 1);
+}
+void pngRead(png_structp png, png_bytep data, size_t size) {
+    auto& stream = static_cast<PngTextJob*>(png_get_io_ptr(png))->stream;
+    stream.read(reinterpret_cast<char*>(data), static_cast<std::streamsize>(size));
+    if (static_cast<size_t>(stream.gcount()) != size) png_error(png, "the file ends early");
+}
+
+// Reads up to the first pixels.
+bool runPngTextJob(PngTextJob& job) {
+    png_structp png = png_create_read_struct(PNG_LIBPNG_VER_STRING, &job, pngTextError, pngWarning);
+    png_infop info = png ? png_create_info_struct(png) : nullptr;
+    if (!info || setjmp(png_jmpbuf(png))) {
+        png_destroy_read_struct(&png, &info, nullptr);
+        return false;
+    }
+    png_set_read_fn(png, &job, pngRead);
+    png_read_info(png, info);
+    png_textp texts = nullptr;
+    int count = 0;
+    png_get_text(png, info, &texts, &count);
+    for (int i = 0; i < count; ++i)
+        if (factsName == texts[i].key) job.text = texts[i].text;
+    png_destroy_read_struct(&png, &info, nullptr);
+    return true;
+}
+
+Json pngFacts(const fs::path& file) {
+    PngTextJob job{std::ifstream(file, std::ios::binary), {}, {}};
+    if (!job.stream) throw InputError(fmt::format("{}: cannot be opened", file.string()));
+    if (!runPngTextJob(job)) throw InputError(fmt::format("{}: cannot be read as a PNG: {}", file.string(), job.error));
+    return job.text.empty() ? Json() : parseJson(job.text);
+}
+
 // --- OpenEXR -------------------------------------------------------------------------------------------------------
 
-std::string encodeExr(const fs::path& file, const Picture& picture, const Facts& facts) {
+std::string encodeExr(const fs::path& file, const Picture& picture, const Json& facts) {
     const size_t channels = picture.channels.size();
     const size_t texels = static_cast<size_t>(picture.width) * static_cast<size_t>(picture.height);
     std::vector<size_t> order(channels); // OpenEXR wants its channels sorted by name
@@ -110,12 +159,17 @@ std::string encodeExr(const fs::path& file, const Picture& picture, const Facts&
         name.copy(infos[i].name, sizeof(infos[i].name) - 1);
     }
     std::vector<EXRAttribute> attributes;
-    for (const auto& [key, text] : facts) {
+    std::vector<std::string> texts;
+    if (!facts.is_null())
+        for (const Json& fact : facts) texts.push_back(textOf(fact));
+    for (size_t i = 0; i < texts.size(); ++i) {
         EXRAttribute attribute = {};
-        key.copy(attribute.name, sizeof(attribute.name) - 1);
+        const std::string name =
+            fmt::format("{}.{}", factsName, std::next(facts.begin(), static_cast<ptrdiff_t>(i)).key());
+        name.copy(attribute.name, sizeof(attribute.name) - 1);
         std::strcpy(attribute.type, "string");
-        attribute.value = reinterpret_cast<unsigned char*>(const_cast<char*>(text.data())); // only read
-        attribute.size = static_cast<int>(text.size());
+        attribute.value = reinterpret_cast<unsigned char*>(texts[i].data()); // only read
+        attribute.size = static_cast<int>(texts[i].size());
         attributes.push_back(attribute);
     }
     std::vector<int> pixelTypes(channels, TINYEXR_PIXELTYPE_FLOAT);
@@ -146,6 +200,31 @@ std::string encodeExr(const fs::path& file, const Picture& picture, const Facts&
     std::string bytes(reinterpret_cast<const char*>(memory), size);
     free(memory);
     return bytes;
+}
+
+Json exrFacts(const fs::path& file) {
+    EXRVersion version;
+    EXRHeader header;
+    InitEXRHeader(&header);
+    const char* error = nullptr;
+    if (ParseEXRVersionFromFile(&version, file.c_str()) != TINYEXR_SUCCESS ||
+        ParseEXRHeaderFromFile(&header, &version, file.c_str(), &error) != TINYEXR_SUCCESS) {
+        const std::string reason = error ? fmt::format(": {}", error) : "";
+        FreeEXRErrorMessage(error);
+        throw InputError(fmt::format("{}: cannot be read as an OpenEXR file{}", file.string(), reason));
+    }
+    std::vector<std::pair<std::string, std::string>> texts;
+    const std::string front = fmt::format("{}.", factsName);
+    for (int i = 0; i < header.num_custom_attributes; ++i) {
+        const EXRAttribute& attribute = header.custom_attributes[i];
+        if (const std::string_view name = attribute.name; name.starts_with(front))
+            texts.emplace_back(name.substr(front.size()), std::string(reinterpret_cast<char*>(attribute.value),
+                                                                      static_cast<size_t>(attribute.size)));
+    }
+    FreeEXRHeader(&header);
+    Json facts;
+    for (const auto& [key, text] : texts) facts[key] = parseJson(text);
+    return facts;
 }
 
 // --- PFM and NPY ---------------------------------------------------------------------------------------------------
@@ -182,7 +261,7 @@ std::string encodeNpy(const Picture& picture) {
     return bytes;
 }
 
-std::string encode(const fs::path& file, const Picture& picture, const Facts& facts) {
+std::string encode(const fs::path& file, const Picture& picture, const Json& facts) {
     switch (pictureFormat(file)) {
     case PictureFormat::Png: return encodePng(file, picture, facts);
     case PictureFormat::Exr: return encodeExr(file, picture, facts);
@@ -205,11 +284,24 @@ PictureFormat pictureFormat(const fs::path& file) {
     throw InputError(fmt::format("{}: pictures end in .png, .exr, .pfm or .npy", file.string()));
 }
 
-void writePicture(const fs::path& file, const Picture& picture, const Facts& facts) {
+void writePicture(const fs::path& file, const Picture& picture, const Json& facts) {
+    ensure(facts.is_null() || facts.is_object(), "facts have names");
     ensure(picture.values.size() ==
                static_cast<size_t>(picture.width) * static_cast<size_t>(picture.height) * picture.channels.size(),
            "a picture has another number of values than it says");
     writeFileAtomically(file, encode(file, picture, facts));
+}
+
+Json readPictureFacts(const fs::path& file) {
+    std::error_code error;
+    const fs::file_status status = fs::status(file, error);
+    if (!fs::exists(status)) throw InputError(fmt::format("{}: No such file or directory", file.string()));
+    if (!fs::is_regular_file(status)) throw InputError(fmt::format("{}: is not a regular file", file.string()));
+    switch (pictureFormat(file)) {
+    case PictureFormat::Png: return pngFacts(file);
+    case PictureFormat::Exr: return exrFacts(file);
+    default: return nullptr;
+    }
 }
 
 } // namespace penumbra

@@ -6,7 +6,6 @@
 #include "renderer/frame.h"
 
 #include <fmt/format.h>
-#include <nlohmann/json.hpp>
 
 #include <algorithm>
 #include <cctype>
@@ -14,8 +13,6 @@
 
 namespace penumbra {
 namespace {
-
-using Json = nlohmann::ordered_json;
 
 std::string_view typeName(Parameter::Type type) {
     static constexpr std::string_view names[] = {"real", "integer", "flag", "choice"};
@@ -112,7 +109,8 @@ Json sceneJson(const Scene& scene) {
 
 // Everything that there is to list; the text is written from it.
 Json listing(const Options& options) {
-    Session session = makeSession(options);
+    Shot shot;
+    Session session = makeSession(options, shot);
     Json techniques = Json::array();
     for (const Card* card : catalogue()) {
         if (options.technique && card->id != *options.technique) continue;

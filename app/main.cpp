@@ -9,25 +9,18 @@
 #include <algorithm>
 #include <cstdio>
 #include <cstdlib>
-#include <filesystem>
 
 using namespace penumbra;
 
 namespace {
 
-std::filesystem::path picturesFolder() {
-    const char* home = std::getenv("HOME");
-    const std::filesystem::path pictures = std::filesystem::path(home ? home : "") / "Pictures";
-    std::error_code ignored;
-    return std::filesystem::is_directory(pictures, ignored) ? pictures : std::filesystem::current_path(ignored);
-}
-
 int openWindow(const Options& options) {
     if (!std::getenv("DISPLAY") && !std::getenv("WAYLAND_DISPLAY"))
         throw InputError("there is no display to open a window on (neither DISPLAY nor WAYLAND_DISPLAY is set); "
                          "'penumbra capture' renders without one");
-    Session session = makeSession(options);
-    return runWindow(session, {picturesFolder(), session.size.x, session.size.y});
+    Shot shot;
+    Session session = makeSession(options, shot);
+    return runWindow(session, session.size);
 }
 
 int run(const Options& options) {

@@ -13,7 +13,6 @@ namespace penumbra {
 namespace {
 
 namespace fs = std::filesystem;
-using Json = nlohmann::ordered_json;
 
 constexpr size_t largestPreset = 1 << 20; // bytes
 
@@ -49,17 +48,6 @@ void setFromJson(Parameter& parameter, const Json& value) {
         parameter.setText(value.get_ref<const std::string&>());
 }
 
-Json parse(const std::string& text) {
-    try {
-        return Json::parse(text);
-    } catch (const Json::exception& error) {
-        // "[json.exception.parse_error.101] parse error at line 3, column 5: ..."
-        const std::string_view message = error.what();
-        const size_t bracket = message.find("] ");
-        throw InputError(std::string(bracket == std::string_view::npos ? message : message.substr(bracket + 2)));
-    }
-}
-
 // The preset's technique, with the preset's values.
 std::unique_ptr<Technique> readPreset(const Json& json) {
     if (!json.is_object()) throw InputError(fmt::format("an object was expected, not {}", json.type_name()));
@@ -67,14 +55,7 @@ std::unique_ptr<Technique> readPreset(const Json& json) {
     for (const auto& [key, value] : json.items())
         if (std::find(std::begin(keys), std::end(keys), key) == std::end(keys))
             throw InputError(fmt::format("unknown key '{}'{}", key, suggestion(key, keys)));
-    if (!json.contains("technique") || !json["technique"].is_string())
-        throw InputError("\"technique\": the id of a technique was expected");
-    auto technique = makeTechnique(findCard(json["technique"].get_ref<const std::string&>()));
-    if (!json.contains("parameters")) return technique;
-    if (!json["parameters"].is_object())
-        throw InputError(fmt::format("\"parameters\": an object was expected, not {}", json["parameters"].type_name()));
-    for (const auto& [id, value] : json["parameters"].items()) setFromJson(technique->parameters().at(id), value);
-    return technique;
+    return techniqueFromJson(findKey(json, "technique"), findKey(json, "parameters"));
 }
 
 fs::path userFolder() {
@@ -82,17 +63,26 @@ fs::path userFolder() {
     return folder.empty() ? folder : folder / "presets";
 }
 
-void appendNames(const fs::path& folder, std::vector<std::string>& names) {
+std::vector<std::string> namesIn(const fs::path& folder) {
+    std::vector<std::string> names;
     for (const Card* card : catalogue()) {
-        std::vector<std::string> found;
+        const auto first = static_cast<std::ptrdiff_t>(names.size());
         std::error_code ignored;
         for (const fs::directory_entry& entry : fs::directory_iterator(folder / card->id, ignored))
             if (entry.path().extension() == ".json")
-                found.push_back(fmt::format("{}/{}", card->id, entry.path().stem().string()));
-        std::sort(found.begin(), found.end());
-        for (std::string& name : found)
-            if (std::find(names.begin(), names.end(), name) == names.end()) names.push_back(std::move(name));
+                names.push_back(fmt::format("{}/{}", card->id, entry.path().stem().string()));
+        std::sort(names.begin() + first, names.end());
     }
+    return names;
+}
+
+// Throws InputError if the user has no such preset.
+fs::path ownPreset(std::string_view technique, std::string_view name) {
+    fs::path file = userPresetFile(technique, name);
+    std::error_code ignored;
+    if (!fs::is_regular_file(file, ignored))
+        throw InputError(fmt::format("{}: there is no preset '{}' of yours", file.string(), name));
+    return file;
 }
 
 } // namespace
@@ -107,20 +97,32 @@ Json jsonOf(const Parameter& parameter, double value) {
     return nullptr;
 }
 
-Json presetOf(const TechniqueShelf& techniques) {
+Json parametersJson(const ParameterSet& set, Which which) {
     Json parameters = Json::object();
-    for (const Parameter* parameter : techniques.parameters().all())
-        if (parameter->changed())
+    for (const Parameter* parameter : set.all())
+        if (which == Which::All || parameter->changed())
             parameters[std::string(parameter->spec().id)] = jsonOf(*parameter, parameter->value());
-    return {{"technique", techniques.card().id}, {"parameters", parameters}};
+    return parameters;
+}
+
+std::unique_ptr<Technique> techniqueFromJson(const Json* id, const Json* parameters) {
+    if (!id || !id->is_string()) throw InputError("'technique': the id of a technique was expected");
+    auto technique = makeTechnique(findCard(id->get_ref<const std::string&>()));
+    if (!parameters) return technique;
+    if (!parameters->is_object())
+        throw InputError(fmt::format("'parameters': an object was expected, not {}", parameters->type_name()));
+    for (const auto& [key, value] : parameters->items()) setFromJson(technique->parameters().at(key), value);
+    return technique;
+}
+
+Json presetOf(const TechniqueShelf& techniques) {
+    return {{"technique", techniques.card().id},
+            {"parameters", parametersJson(techniques.parameters(), Which::Changed)}};
 }
 
 void loadPreset(const fs::path& file, TechniqueShelf& techniques) {
     try {
-        const auto technique = readPreset(parse(readFile(file, largestPreset)));
-        const ParameterSet& values = technique->parameters();
-        techniques.parametersOf(values.owner()).copyValuesFrom(values);
-        techniques.choose(values.owner());
+        techniques.take(readPreset(parseJson(readFile(file, largestPreset)))->parameters());
     } catch (const InputError& error) {
         const std::string message = error.what();
         throw InputError(message.starts_with(file.string()) ? message : file.string() + ": " + message);
@@ -136,10 +138,17 @@ void savePreset(const fs::path& file, const TechniqueShelf& techniques) {
     writeFileAtomically(file, presetOf(techniques).dump(2) + "\n");
 }
 
+std::vector<std::string> ownPresetNames() {
+    const fs::path own = userFolder();
+    return own.empty() ? std::vector<std::string>() : namesIn(own);
+}
+
+std::vector<std::string> builtInPresetNames() { return namesIn(assetFolder() / "presets"); }
+
 std::vector<std::string> presetNames() {
-    std::vector<std::string> names;
-    if (const fs::path own = userFolder(); !own.empty()) appendNames(own, names);
-    appendNames(assetFolder() / "presets", names);
+    std::vector<std::string> names = ownPresetNames();
+    for (std::string& name : builtInPresetNames())
+        if (std::find(names.begin(), names.end(), name) == names.end()) names.push_back(std::move(name));
     return names;
 }
 
@@ -156,7 +165,7 @@ fs::path findPreset(std::string_view nameOrFile) {
     return !own.empty() && fs::exists(own / relative, ignored) ? own / relative : assetFolder() / "presets" / relative;
 }
 
-fs::path userPresetFile(const TechniqueShelf& techniques, std::string_view name) {
+fs::path userPresetFile(std::string_view technique, std::string_view name) {
     const fs::path folder = userFolder();
     if (folder.empty()) throw InputError("presets have no folder: neither HOME nor XDG_CONFIG_HOME is set");
     const auto allowed = [](char c) {
@@ -168,7 +177,23 @@ fs::path userPresetFile(const TechniqueShelf& techniques, std::string_view name)
         throw InputError(fmt::format("'{}' cannot be the name of a preset; letters, digits, '-', '_', '.' and blanks "
                                      "were expected, starting with neither '.' nor a blank",
                                      name));
-    return folder / techniques.card().id / (std::string(name) + ".json");
+    return folder / technique / (std::string(name) + ".json");
+}
+
+void renamePreset(std::string_view technique, std::string_view name, std::string_view newName) {
+    const fs::path from = ownPreset(technique, name), to = userPresetFile(technique, newName);
+    std::error_code error;
+    if (fs::exists(to, error))
+        throw InputError(fmt::format("{}: there is a preset '{}' already", to.string(), newName));
+    fs::rename(from, to, error);
+    if (error) throw InputError(fmt::format("{}: cannot be renamed: {}", from.string(), error.message()));
+}
+
+void deletePreset(std::string_view technique, std::string_view name) {
+    const fs::path file = ownPreset(technique, name);
+    std::error_code error;
+    fs::remove(file, error);
+    if (error) throw InputError(fmt::format("{}: cannot be deleted: {}", file.string(), error.message()));
 }
 
 } // namespace penumbra

@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: MIT
 #include "app/window.h"
 
-#include "app/capture.h"
 #include "app/file_io.h"
+#include "app/image_file.h"
 #include "app/preset.h"
+#include "app/session_facts.h"
+#include "app/settings.h"
 #include "renderer/core/paths.h"
 #include "ui/workspace.h"
 
@@ -63,13 +65,13 @@ struct Heard {
 
 class Window {
 public:
-    explicit Window(const WindowOptions& options) {
+    explicit Window(glm::ivec2 size) {
         glfwWindowHint(GLFW_CONTEXT_VERSION_MAJOR, 4);
         glfwWindowHint(GLFW_CONTEXT_VERSION_MINOR, 5);
         glfwWindowHint(GLFW_OPENGL_PROFILE, GLFW_OPENGL_CORE_PROFILE);
         glfwWindowHint(GLFW_SCALE_TO_MONITOR, GLFW_TRUE);
         glfwWindowHintString(GLFW_X11_CLASS_NAME, "penumbra");
-        window_ = glfwCreateWindow(options.width, options.height, "Penumbra", nullptr, nullptr);
+        window_ = glfwCreateWindow(size.x, size.y, "Penumbra", nullptr, nullptr);
         if (!window_)
             throw InputError(
                 fmt::format("the window needs OpenGL 4.5, which this display does not offer ({})", lastGlfwError()));
@@ -160,7 +162,7 @@ void Window::onStroke(GLFWwindow* window, int key, int modifiers) {
     Keys& struck = heard(window).struck;
     const bool control = modifiers & GLFW_MOD_CONTROL;
     if (key == GLFW_KEY_ESCAPE) struck.escape = true;
-    if (key == GLFW_KEY_F12) struck.picture = true;
+    if (key == GLFW_KEY_F12) (modifiers & GLFW_MOD_SHIFT ? struck.windowPicture : struck.picture) = true;
     if (key == GLFW_KEY_F1) struck.help = true;
     if (control && key == GLFW_KEY_Q) glfwSetWindowShouldClose(window, GLFW_TRUE);
     if (control && key == GLFW_KEY_O) struck.open = true;
@@ -274,56 +276,151 @@ private:
     float dots_ = 0, pixels_ = 0;
 };
 
-// FOLDER/SCENE-TECHNIQUE-WHAT-YYYYMMDD-HHMMSS.png, with a number behind it where that is taken.
-fs::path pictureFile(const fs::path& folder, const Session& session, const std::string& what, const char* ending) {
-    const std::time_t now = std::time(nullptr);
-    std::tm local{};
-    localtime_r(&now, &local);
-    char moment[32];
-    std::strftime(moment, sizeof(moment), "%Y%m%d-%H%M%S", &local);
-    std::string name = fmt::format("{}-{}-{}{}{}", session.scene->name, session.techniques.card().id, what,
-                                   what.empty() ? "" : "-", moment);
-    std::replace_if(
-        name.begin(), name.end(), [](unsigned char c) { return c < 32 || c == '/' || c == '\\'; }, '_');
-    std::error_code ignored; // a folder that cannot be made shows when the file is written
+// FOLDER/SCENE-TECHNIQUE-YYYYMMDD-HHMMSS or, of a buffer, FOLDER/SCENE-TECHNIQUE-WHAT-..., and the ending, with a number between where that is taken or promised.
+class FileNames {
+public:
+    fs::path next(const fs::path& folder, const Session& session, std::string_view ending,
+                  std::string_view what = {}) {
+        const std::time_t now = std::time(nullptr);
+        std::tm local{};
+        localtime_r(&now, &local);
+        char moment[32];
+        std::strftime(moment, sizeof(moment), "%Y%m%d-%H%M%S", &local);
+        std::string name = fmt::format("{}-{}-{}{}{}", session.scene->name, session.techniques.card().id, what,
+                                       what.empty() ? "" : "-", moment);
+        std::replace_if(
+            name.begin(), name.end(), [](unsigned char c) { return c < 32 || c == '/' || c == '\\'; }, '_');
+        std::error_code ignored;
+        fs::path file = folder / fmt::format("{}{}", name, ending);
+        for (int i = 2; file == last_ || fs::exists(file, ignored); ++i)
+            file = folder / fmt::format("{}-{}{}", name, i, ending);
+        return last_ = file;
+    }
+
+private:
+    fs::path last_; // perhaps still being written
+};
+
+void makeFolder(const fs::path& folder) {
+    std::error_code ignored; // a folder that cannot be made shows when a file is written
     fs::create_directories(folder, ignored);
-    fs::path file = folder / (name + ending);
-    for (int i = 2; fs::exists(file, ignored); ++i) file = folder / fmt::format("{}-{}{}", name, i, ending);
-    return file;
 }
 
-Actions actionsOn(Session& session, const Renderer& renderer, const fs::path& picturesFolder) {
+// RGB, bottom row first, as OpenGL gives them.
+struct Pixels {
+    glm::ivec2 size;
+    std::vector<uint8_t> bytes;
+    explicit Pixels(glm::ivec2 s) : size(s), bytes(3 * static_cast<size_t>(s.x) * static_cast<size_t>(s.y)) {}
+};
+
+// What stands in the back buffer.
+Pixels windowPixels(const Window& window) {
+    Pixels pixels(window.framebufferSize());
+    glBindFramebuffer(GL_READ_FRAMEBUFFER, 0);
+    glReadBuffer(GL_BACK);
+    glPixelStorei(GL_PACK_ALIGNMENT, 1);
+    glReadPixels(0, 0, pixels.size.x, pixels.size.y, GL_RGB, GL_UNSIGNED_BYTE, pixels.bytes.data());
+    return pixels;
+}
+
+Pixels viewPixels(const Renderer& renderer) {
+    const Texture& display = renderer.runner().texture(renderer.flow(), renderer.display());
+    Pixels pixels({display.extent().width, display.extent().height});
+    glPixelStorei(GL_PACK_ALIGNMENT, 1);
+    glGetTextureImage(display.name(), 0, GL_RGB, GL_UNSIGNED_BYTE, static_cast<GLsizei>(pixels.bytes.size()),
+                      pixels.bytes.data());
+    return pixels;
+}
+
+Picture pictureOf(const Pixels& pixels) {
+    Picture picture{pixels.size.x, pixels.size.y, {"R", "G", "B"}};
+    picture.values.reserve(pixels.bytes.size());
+    const size_t row = 3 * static_cast<size_t>(pixels.size.x);
+    for (size_t y = static_cast<size_t>(pixels.size.y); y-- > 0;)
+        for (size_t i = y * row; i < (y + 1) * row; ++i)
+            picture.values.push_back(static_cast<float>(pixels.bytes[i]) / 255.0f);
+    return picture;
+}
+
+Actions actionsOn(Session& session, const Renderer& renderer, const Window& window, Settings& settings,
+                  FileNames& names) {
     Actions actions;
-    actions.presetNames = presetNames;
+    actions.readPicture = [](SceneRequest& request) {
+        if (!mayHoldFacts(request.nameOrFile)) return;
+        const auto facts = std::make_shared<const PictureFacts>(request.nameOrFile);
+        request = {facts->scene().string(), facts->choice(), false, [facts](Session& restored) {
+                       facts->restore(restored);
+                       restored.frame = 0;
+                       return facts->doubtAboutScene(*restored.scene);
+                   }};
+    };
+    actions.presetNames = [] { return PresetNames{ownPresetNames(), builtInPresetNames()}; };
     actions.loadPreset = [&session](const std::string& name) { loadPreset(findPreset(name), session.techniques); };
     actions.savePreset = [&session](const std::string& name) {
-        savePreset(userPresetFile(session.techniques, name), session.techniques);
+        savePreset(userPresetFile(session.techniques.card().id, name), session.techniques);
     };
-    actions.savePicture = [&session, &renderer, picturesFolder] {
-        const fs::path file = pictureFile(picturesFolder, session, "", ".png");
-        writePicture(file, displayPicture(renderer), factsOf(session, renderer.driver()));
+    actions.renamePreset = [&session](const std::string& name, const std::string& newName) {
+        renamePreset(session.techniques.card().id, name, newName);
+    };
+    actions.deletePreset = [&session](const std::string& name) { deletePreset(session.techniques.card().id, name); };
+    actions.savePicture = [&](bool wholeWindow) {
+        const int frames = std::max(static_cast<int>(session.frame), 1);
+        Json facts = factsOf(session, {.frames = frames, .panels = wholeWindow}, renderer.driver());
+        Pixels pixels = wholeWindow ? windowPixels(window) : viewPixels(renderer);
+        makeFolder(settings.pictures);
+        // Compressing takes longer than a frame may.
+        return std::async(std::launch::async, [file = names.next(settings.pictures, session, ".png"),
+                                               pixels = std::move(pixels), facts = std::move(facts)] {
+            writePicture(file, pictureOf(pixels), facts);
+            return file;
+        });
+    };
+    actions.saveBuffer = [&](const BufferShot& shot) {
+        makeFolder(settings.pictures);
+        const fs::path file = names.next(settings.pictures, session, shot.raw ? ".exr" : ".png", shot.label);
+        const int frames = std::max(static_cast<int>(session.frame), 1);
+        writePicture(file, shot.picture, factsOf(session, {.frames = frames, .buffer = shot.label}, renderer.driver()));
         return file;
     };
-    actions.saveBuffer = [&session, &renderer, picturesFolder](const BufferShot& shot) {
-        const fs::path file = pictureFile(picturesFolder, session, shot.label, shot.raw ? ".exr" : ".png");
-        Facts facts = factsOf(session, renderer.driver());
-        facts.push_back({"buffer", shot.label});
-        writePicture(file, shot.picture, facts);
+    actions.saveTimings = [&](const std::string& table) {
+        makeFolder(settings.pictures);
+        fs::path file = names.next(settings.pictures, session, "-timings.csv");
+        writeFileAtomically(file, table);
         return file;
+    };
+    actions.picturesFolder = [&settings] { return settings.pictures; };
+    actions.setPicturesFolder = [&settings](const fs::path& folder) {
+        if (!folder.is_absolute())
+            throw InputError(
+                fmt::format("'{}': the whole path of a folder was expected, from '/' on", folder.string()));
+        const Settings chosen{folder.lexically_normal()};
+        makeFolder(chosen.pictures);
+        checkWritable(chosen.pictures / "picture.png");
+        saveSettings(chosen);
+        settings = chosen;
     };
     return actions;
 }
 
 } // namespace
 
-int runWindow(Session& session, const WindowOptions& options) {
+int runWindow(Session& session, glm::ivec2 size) {
     const Glfw glfw;
-    Window window(options);
+    Window window(size);
     Renderer renderer;
     Gui gui(window);
     const LoadingContext loadingContext(window.get());
     SceneLoader loader([&](bool current) { loadingContext.makeCurrent(current); });
-    Workspace workspace(session, renderer, loader, actionsOn(session, renderer, options.picturesFolder));
+    Settings settings = defaultSettings();
+    std::string trouble;
+    try {
+        settings = loadSettings();
+    } catch (const InputError& error) {
+        trouble = error.what();
+    }
+    FileNames names;
+    Workspace workspace(session, renderer, loader, actionsOn(session, renderer, window, settings, names));
+    if (!trouble.empty()) workspace.say(trouble);
     if (!gui.fit()) workspace.say("DejaVu Sans is not installed: Greek letters and signs show as '?'");
     glfwSetWindowTitle(window.get(), fmt::format("{} – Penumbra", session.scene->name).c_str());
 
@@ -354,6 +451,7 @@ int runWindow(Session& session, const WindowOptions& options) {
         gui.begin();
         workspace.draw(keysOf(window, heard.struck), seconds, window.pixelsPerUnit());
         gui.end();
+        workspace.drawn();
         for (const auto& [key, modifiers] : heard.releasedAtOnce)
             ImGui_ImplGlfw_KeyCallback(window.get(), key, glfwGetKeyScancode(key), GLFW_RELEASE, modifiers);
         glfwSwapBuffers(window.get());

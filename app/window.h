@@ -4,17 +4,10 @@
 
 #include "renderer/session.h"
 
-#include <filesystem>
-
 namespace penumbra {
 
-struct WindowOptions {
-    std::filesystem::path picturesFolder; // where pictures taken in the window go
-    int width = 1280, height = 720;
-};
-
-// Shows the session until the window is closed; returns the program's exit code. Throws InputError if there is no
-// display or no OpenGL 4.5.
-int runWindow(Session& session, const WindowOptions& options);
+// Shows the session in a window of this size until it is closed; returns the program's exit code. Throws InputError if
+// there is no display or no OpenGL 4.5.
+int runWindow(Session& session, glm::ivec2 size);
 
 } // namespace penumbra

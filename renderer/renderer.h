@@ -67,6 +67,8 @@ public:
     // our file and line; the last good program runs on meanwhile.
     const std::vector<std::string>& pollShaders() { return programs_.poll(); }
     uint64_t shaderGeneration() const { return programs_.generation(); }
+    // Takes in the times of frames drawn before that have come in since.
+    void pollTimes() { runner_.pollTimes(); }
     bool softwareRenderer() const { return software_; }
     const std::string& driver() const { return driver_; } // "llvmpipe (...), Mesa ..."
 

@@ -42,6 +42,11 @@ const Card& TechniqueShelf::card() const { return *catalogue()[chosen_]; }
 
 ParameterSet& TechniqueShelf::parametersOf(std::string_view id) const { return techniques_[indexOf(id)]->parameters(); }
 
+void TechniqueShelf::take(const ParameterSet& values) {
+    chosen_ = indexOf(values.owner());
+    parameters().copyValuesFrom(values);
+}
+
 void TechniqueShelf::assign(std::string_view assignment) const {
     const size_t equals = assignment.find('=');
     if (equals == std::string_view::npos)
@@ -69,6 +74,11 @@ void Session::setScene(OpenedScene opened) {
     clip = 0;
     time = 0;
     frame = 0;
+}
+
+std::span<const std::string_view> showNames() {
+    static constexpr std::string_view names[] = {"lit", "shadow"};
+    return names;
 }
 
 void changeShape(AreaLight& light, LightShape shape) {

@@ -23,10 +23,12 @@ inline constexpr Range lightDegrees{1e-3, 120}; // angular diameter of a directi
 inline constexpr Range seconds{0, 1e7};         // of the animation
 inline constexpr Range exposure{-20, 20};       // [stops]
 inline constexpr Range ambient{0, 100};
+inline constexpr Range brightness{0, 1e6}; // of a light: its intensity, and its colour in each channel
 inline constexpr Range textureMebibytes{1, 1 << 20};
 } // namespace limits
 
 enum class Show { Lit, Shadow };
+std::span<const std::string_view> showNames(); // "lit", "shadow"
 
 struct DisplaySettings {
     Show show = Show::Lit;
@@ -43,6 +45,9 @@ public:
     Technique& technique() const { return *techniques_[chosen_]; }
     ParameterSet& parameters() const { return technique().parameters(); }
     ParameterSet& parametersOf(std::string_view id) const; // throws InputError
+
+    // Chooses the technique that these values belong to and gives its parameters them.
+    void take(const ParameterSet& values);
 
     // "pcf.kernel=9" or, for the chosen technique, "kernel=9". Throws InputError.
     void assign(std::string_view assignment) const;

@@ -10,8 +10,6 @@ namespace fs = std::filesystem;
 
 namespace {
 
-constexpr const char* title = "Open a scene";
-
 bool isScene(const fs::path& file) {
     std::string ending = file.extension().string();
     std::transform(ending.begin(), ending.end(), ending.begin(), [](unsigned char c) { return std::tolower(c); });
@@ -37,7 +35,8 @@ void FileChooser::enter(const fs::path& folder) {
          !error && i != end; i.increment(error)) {
         const std::string name = i->path().filename().string();
         const bool isFolder = i->is_directory(ignored);
-        if (!name.starts_with('.') && (isFolder || isScene(i->path()))) entries_.push_back({name, isFolder});
+        if (!name.starts_with('.') && (isFolder || (pick_ == Pick::Scene && isScene(i->path()))))
+            entries_.push_back({name, isFolder});
     }
     if (error) trouble_ = error.message();
     std::sort(entries_.begin(), entries_.end(), [](const Entry& a, const Entry& b) {
@@ -46,6 +45,8 @@ void FileChooser::enter(const fs::path& folder) {
 }
 
 std::optional<fs::path> FileChooser::draw(bool cancelled) {
+    const bool folders = pick_ == Pick::Folder;
+    const char* title = folders ? "Folder for pictures and tables" : "Open a scene";
     if (opening_) ImGui::OpenPopup(title);
     cancelled = cancelled && !opening_;
     opening_ = false;
@@ -59,7 +60,7 @@ std::optional<fs::path> FileChooser::draw(bool cancelled) {
     std::optional<fs::path> chosen;
     const float up = ImGui::CalcTextSize("Up").x + 2 * ImGui::GetStyle().FramePadding.x;
     ImGui::SetNextItemWidth(-up - ImGui::GetStyle().ItemSpacing.x);
-    if (typed_.edit("##folder", "folder or file", ImGuiInputTextFlags_EnterReturnsTrue)) {
+    if (typed_.edit("##folder", folders ? "folder" : "folder or file", ImGuiInputTextFlags_EnterReturnsTrue)) {
         const fs::path typed(typed_.view());
         std::error_code ignored;
         if (fs::is_directory(typed, ignored))
@@ -75,7 +76,7 @@ std::optional<fs::path> FileChooser::draw(bool cancelled) {
     if (!trouble_.empty())
         wrappedText(colour::error, trouble_);
     else if (entries_.empty())
-        text(colour::muted, "No folders and no .gltf or .glb files here.");
+        text(colour::muted, folders ? "No folders here." : "No folders and no .gltf or .glb files here.");
     for (const Entry& entry : entries_) {
         const ShortText line("{}{}", entry.name, entry.folder ? "/" : "");
         if (entry.folder) ImGui::PushStyleColor(ImGuiCol_Text, colour::muted);
@@ -89,6 +90,10 @@ std::optional<fs::path> FileChooser::draw(bool cancelled) {
     }
     ImGui::EndChild();
     if (entered) enter(*entered);
+    if (folders) {
+        if (ImGui::Button("Take this folder")) chosen = fs::path(typed_.view());
+        ImGui::SameLine();
+    }
     if (ImGui::Button("Cancel") || cancelled || chosen) ImGui::CloseCurrentPopup();
     ImGui::EndPopup();
     return chosen;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// A dialog over the folders of this machine that picks one scene file.
+// A dialog over the folders of this machine that picks one scene file, or a folder.
 #pragma once
 
 #include "ui/widgets.h"
@@ -12,9 +12,12 @@ namespace penumbra {
 
 class FileChooser {
 public:
+    enum class Pick { Scene, Folder };
+    explicit FileChooser(Pick pick = Pick::Scene) : pick_(pick) {}
+
     // Opens in this folder, or in the current one if it is empty.
     void open(const std::filesystem::path& folder);
-    // Draws the dialog while it is open; the file once it is chosen.
+    // Draws the dialog while it is open; the file or folder once it is chosen.
     std::optional<std::filesystem::path> draw(bool cancelled);
 
 private:
@@ -24,6 +27,7 @@ private:
     };
     void enter(const std::filesystem::path& folder);
 
+    Pick pick_;
     bool opening_ = false;
     std::filesystem::path folder_;
     std::vector<Entry> entries_;

@@ -14,15 +14,16 @@ struct Keys {
     bool up = false, down = false;                                   // E Q
     bool shift = false;
     // struck
-    bool help = false;       // H, F1
-    bool frameScene = false; // F
-    bool restart = false;    // R
-    bool show = false;       // V
-    bool play = false;       // space
-    bool buffers = false;    // B
-    bool timings = false;    // T
-    bool open = false;       // Ctrl+O
-    bool picture = false;    // F12
+    bool help = false;          // H, F1
+    bool frameScene = false;    // F
+    bool restart = false;       // R
+    bool show = false;          // V
+    bool play = false;          // space
+    bool buffers = false;       // B
+    bool timings = false;       // T
+    bool open = false;          // Ctrl+O
+    bool picture = false;       // F12: of the view
+    bool windowPicture = false; // Shift+F12: of the whole window
     bool escape = false;
 };
 
@@ -51,7 +52,7 @@ inline constexpr KeyHelp keyHelp[] = {
     {"Space", "play or pause the animation"},
     {"B,  T", "buffers, timings"},
     {"Ctrl + O", "open a scene"},
-    {"F12", "save a picture"},
+    {"F12,  Shift + F12", "save a picture of the view, of the whole window"},
     {"H,  F1", "this help"},
     {"Ctrl + Q", "quit"},
 };

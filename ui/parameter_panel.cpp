@@ -37,16 +37,26 @@ ShortText asFormat(std::string_view line) {
 void help(const Parameter& parameter) {
     const Spec& spec = parameter.spec();
     beginHelp();
-    const std::string label = parameter.label();
-    text(spec.symbol.empty() ? ShortText("{}", label).view() : ShortText("{}  {}", label, spec.symbol).view());
+    text(parameter.label());
     text(colour::muted, parameter.qualifiedName());
+    if (!parameter.active()) {
+        ImGui::Spacing();
+        text(colour::warning, ShortText("Without effect at the moment: {}", spec.inactiveReason).view());
+    }
     ImGui::Spacing();
     if (!spec.help.empty()) text(spec.help);
     ImGui::Spacing();
-    text(colour::muted, ShortText("Range    {}", parameter.rangeText()).view());
-    text(colour::muted, ShortText("Default  {}", parameter.textOf(parameter.defaultValue())).view());
-    if (!spec.source.empty()) text(colour::muted, ShortText("Source   {}", spec.source).view());
-    if (!parameter.active() && !spec.inactiveReason.empty()) text(colour::warning, spec.inactiveReason);
+    const auto line = [](std::string_view name, std::string_view value) {
+        if (value.empty()) return;
+        text(colour::muted, name);
+        ImGui::SameLine(5 * ImGui::GetFontSize());
+        text(colour::muted, value);
+    };
+    line("Symbol", spec.symbol);
+    line("Unit", unitName(spec.unit));
+    line("Range", parameter.rangeText());
+    line("Default", parameter.textOf(parameter.defaultValue()));
+    line("Source", spec.source);
     endHelp();
 }
 
@@ -65,9 +75,9 @@ void ParameterPanel::draw(ParameterSet& set) {
         return;
     }
     ImGui::PushID(&set);
+    const auto all = set.all();
     group(set, {});
     // Groups in the order in which their first member was declared.
-    const auto all = set.all();
     for (size_t i = 0; i < all.size(); ++i) {
         const auto sameGroup = [&](const Parameter* p) { return p->group() == all[i]->group(); };
         if (!all[i]->group().empty() && std::none_of(all.begin(), all.begin() + static_cast<ptrdiff_t>(i), sameGroup))
@@ -84,16 +94,21 @@ void ParameterPanel::draw(ParameterSet& set) {
 void ParameterPanel::group(ParameterSet& set, std::string_view title) {
     ImGui::PushID(ShortText("{}", title).begin());
     bool changed = false;
-    for (const Parameter* p : set.all()) changed |= p->group() == title && p->changed();
-    if (!title.empty()) {
-        subtitle(title);
-        if (changed) {
-            ImGui::SameLine(ImGui::GetWindowContentRegionMax().x - ImGui::GetFrameHeight());
-            if (resetButton())
-                for (Parameter* p : set.all())
-                    if (p->group() == title) p->reset();
-            tooltip("Give this group its defaults again");
-        }
+    bool any = false;
+    for (const Parameter* p : set.all()) {
+        any |= p->group() == title;
+        changed |= p->group() == title && p->changed();
+    }
+    if (any) {
+        // The row is as high with the button as without.
+        const float right = ImGui::GetWindowContentRegionMax().x - ImGui::GetFrameHeight();
+        subtitle(title.empty() ? "Technique" : title, resetWidth());
+        ImGui::SameLine(right);
+        if (!changed) ImGui::Dummy({ImGui::GetFrameHeight(), ImGui::GetFrameHeight()});
+        if (changed && resetButton())
+            for (Parameter* p : set.all())
+                if (p->group() == title) p->reset();
+        if (changed) tooltip("Give this group its defaults again");
     }
     for (Parameter* p : set.all())
         if (p->group() == title) parameterRow(*p);
@@ -106,21 +121,21 @@ void ParameterPanel::parameterRow(Parameter& parameter) {
     const bool changed = parameter.changed(), active = parameter.active();
     ImGui::PushStyleColor(ImGuiCol_Text, !active ? colour::muted : changed ? colour::accent : colour::text);
     const std::string label = parameter.label();
-    ImGui::BeginGroup();
+    const ImVec2 corner = ImGui::GetCursorScreenPos();
     row(spec.symbol.empty() ? ShortText("{}", label).view() : ShortText("{}  {}", label, spec.symbol).view(),
         resetWidth());
     ImGui::PopStyleColor();
     ImGui::BeginDisabled(!active);
     control(parameter);
     ImGui::EndDisabled();
-    ImGui::EndGroup();
-    if (typed_ != &parameter && pointedAt()) help(parameter);
+    const ImVec2 opposite{ImGui::GetItemRectMax().x, ImGui::GetCursorScreenPos().y - ImGui::GetStyle().ItemSpacing.y};
+    const bool pointed = ImGui::IsWindowHovered() && ImGui::IsMouseHoveringRect(corner, opposite);
+    if (typed_ != &parameter && pointed && !ImGui::IsMouseDown(ImGuiMouseButton_Left)) help(parameter);
     if (changed) {
         ImGui::SameLine(ImGui::GetWindowContentRegionMax().x - ImGui::GetFrameHeight());
         if (resetButton()) parameter.reset();
         tooltip(ShortText("Back to {}", parameter.textOf(parameter.defaultValue())).view());
     }
-    if (!active && !spec.inactiveReason.empty()) wrappedText(colour::muted, spec.inactiveReason);
     if (refused_ == &parameter) wrappedText(colour::error, refusal_);
     ImGui::PopID();
 }
@@ -156,8 +171,14 @@ void ParameterPanel::slider(Parameter& parameter) {
     const ImVec2 corner = ImGui::GetCursorScreenPos();
     const ImVec2 opposite{corner.x + ImGui::CalcItemWidth(), corner.y + ImGui::GetFrameHeight()};
     const bool over = ImGui::IsWindowHovered() && ImGui::IsMouseHoveringRect(corner, opposite) && parameter.active();
-    if (over && ((ImGui::GetIO().KeyCtrl && ImGui::IsMouseClicked(ImGuiMouseButton_Left)) ||
-                 ImGui::IsMouseDoubleClicked(ImGuiMouseButton_Left))) {
+    const bool twice = over && ImGui::IsMouseDoubleClicked(ImGuiMouseButton_Left);
+    // The first click of two has moved the slider.
+    if (twice && pressed_ == &parameter) beforePress_ ? parameter.set(*beforePress_) : parameter.reset();
+    if (over && ImGui::IsMouseClicked(ImGuiMouseButton_Left)) {
+        pressed_ = &parameter;
+        beforePress_ = parameter.changed() ? std::optional(parameter.value()) : std::nullopt;
+    }
+    if (twice || (over && ImGui::GetIO().KeyCtrl && ImGui::IsMouseClicked(ImGuiMouseButton_Left))) {
         typed_ = &parameter;
         focusTyped_ = true;
         typing_.set(parameter.text());

@@ -6,6 +6,8 @@
 
 #include "renderer/core/parameters.h"
 
+#include <optional>
+
 namespace penumbra {
 
 class ParameterPanel {
@@ -22,6 +24,8 @@ private:
     const Parameter* typed_ = nullptr; // whose value is being typed
     bool focusTyped_ = false;
     TextField<64> typing_;
+    const Parameter* pressed_ = nullptr; // whose slider was clicked last, and its value then; none: the default
+    std::optional<double> beforePress_;
     const Parameter* refused_ = nullptr; // whose typed value was refused, and why
     std::string refusal_;
 };

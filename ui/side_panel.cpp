@@ -235,28 +235,91 @@ void SidePanel::technique(Session& session, Requests& requests) {
     tooltip("Forget all history and start again at the first frame (R)");
 }
 
+void SidePanel::takePreset(const TechniqueShelf& techniques, std::string_view name) {
+    presetOf_ = techniques.card().id;
+    preset_ = name;
+    presetName_.set(name);
+    presetValues_.clear();
+    for (const Parameter* parameter : techniques.parameters().all()) presetValues_.push_back(parameter->bits());
+}
+
 void SidePanel::presets(const Session& session, Requests& requests) {
     const std::string_view id = session.techniques.card().id;
-    row("Load");
-    if (ImGui::BeginCombo("##presets", "choose…", ImGuiComboFlags_HeightLarge)) {
+    // "technique/name" → name; nothing for other techniques' presets.
+    const auto nameOf = [&](std::string_view full) {
+        const bool ours = full.size() > id.size() + 1 && full.starts_with(id) && full[id.size()] == '/';
+        return ours ? full.substr(id.size() + 1) : std::string_view();
+    };
+    const auto among = [&](const std::vector<std::string>& names, std::string_view name) {
+        return std::any_of(names.begin(), names.end(), [&](const std::string& full) { return nameOf(full) == name; });
+    };
+    const bool chosen = presetOf_ == id && !preset_.empty();
+    const auto all = session.techniques.parameters().all();
+    const bool changed = chosen && !std::equal(all.begin(), all.end(), presetValues_.begin(), presetValues_.end(),
+                                               [](const Parameter* p, uint32_t bits) { return p->bits() == bits; });
+
+    row("Preset");
+    if (changed) ImGui::PushStyleColor(ImGuiCol_Text, colour::accent);
+    const bool open = ImGui::BeginCombo(
+        "##presets", chosen ? ShortText("{}{}", preset_, changed ? ", changed" : "").begin() : "choose…",
+        ImGuiComboFlags_HeightLarge);
+    if (changed) ImGui::PopStyleColor();
+    if (open) {
         requests.listPresets = ImGui::IsWindowAppearing();
         bool any = false;
-        for (const std::string& name : presetNames_) {
-            if (!name.starts_with(id) || name.size() <= id.size() + 1 || name[id.size()] != '/') continue;
-            any = true;
-            if (ImGui::Selectable(name.c_str() + id.size() + 1)) requests.loadPreset = name;
-        }
+        const auto list = [&](const char* title, const std::vector<std::string>& names) {
+            bool first = true;
+            ImGui::PushID(title);
+            for (const std::string& full : names) {
+                if (nameOf(full).empty()) continue;
+                if (first) text(colour::muted, title);
+                first = false;
+                any = true;
+                const bool hidden = &names == &presetNames_.builtIn && among(presetNames_.own, nameOf(full));
+                if (!hidden && ImGui::Selectable(full.c_str() + id.size() + 1, chosen && nameOf(full) == preset_))
+                    requests.loadPreset = full;
+            }
+            ImGui::PopID();
+        };
+        list("Yours", presetNames_.own);
+        list("Of the papers", presetNames_.builtIn);
         if (!any) text(colour::muted, "none for this technique yet");
         ImGui::EndCombo();
     }
-    row("Save as",
-        ImGui::CalcTextSize("Save").x + 2 * ImGui::GetStyle().FramePadding.x + ImGui::GetStyle().ItemInnerSpacing.x);
-    const bool entered = presetName_.edit("##name", "name", ImGuiInputTextFlags_EnterReturnsTrue);
-    ImGui::SameLine(0, ImGui::GetStyle().ItemInnerSpacing.x);
-    ImGui::BeginDisabled(presetName_.view().empty());
-    if ((ImGui::Button("Save") || entered) && !presetName_.view().empty())
-        requests.savePreset = std::string(presetName_.view());
+    row("Name");
+    const bool entered = presetName_.edit("##name", "to save the values under", ImGuiInputTextFlags_EnterReturnsTrue);
+    const std::string_view name = presetName_.view();
+    const bool exists = among(presetNames_.own, name), own = chosen && among(presetNames_.own, preset_);
+
+    const ImGuiStyle& style = ImGui::GetStyle();
+    const float width = ImGui::CalcTextSize("Overwrite").x + 2 * style.FramePadding.x;
+    ImGui::BeginDisabled(name.empty());
+    if ((ImGui::Button(exists ? "Overwrite###save" : "Save###save", {width, 0}) || entered) && !name.empty())
+        requests.savePreset = std::string(name);
     ImGui::EndDisabled();
+    tooltip("Keep the values that differ from the defaults under this name");
+    ImGui::SameLine();
+    ImGui::BeginDisabled(!own || name.empty() || name == preset_);
+    if (ImGui::Button("Rename", {width, 0})) requests.renamePreset = {preset_, std::string(name)};
+    ImGui::EndDisabled();
+    tooltip(own ? "Give the chosen preset this name" : "Choose a preset of yours, then type its new name");
+    ImGui::SameLine();
+    ImGui::BeginDisabled(!own);
+    if (ImGui::Button("Delete", {width, 0})) ImGui::OpenPopup("delete preset");
+    ImGui::EndDisabled();
+    const ImVec2 below{ImGui::GetItemRectMin().x, ImGui::GetItemRectMax().y + style.FramePadding.y};
+    tooltip(own ? "Delete the file of the chosen preset" : "Only presets of yours can be deleted");
+    ImGui::SetNextWindowPos(below);
+    if (ImGui::BeginPopup("delete preset")) {
+        text(ShortText("Delete the preset '{}'?", preset_).view());
+        if (ImGui::Button("Delete it")) {
+            requests.deletePreset = preset_;
+            ImGui::CloseCurrentPopup();
+        }
+        ImGui::SameLine();
+        if (ImGui::Button("Keep it")) ImGui::CloseCurrentPopup();
+        ImGui::EndPopup();
+    }
 }
 
 void SidePanel::light(Session& session, const SceneFacts& facts) {

@@ -5,6 +5,7 @@
 #include "ui/parameter_panel.h"
 #include "ui/scene_facts.h"
 
+#include <functional>
 #include <optional>
 
 namespace penumbra {
@@ -21,12 +22,21 @@ struct SceneRequest {
     std::string nameOrFile;
     ImportChoice choice = {};
     bool keepView = false;
+    // What a picture tells besides its scene, for a session that has the scene; a line to say about it, or nothing.
+    std::function<std::string(Session&)> restore = {};
+};
+
+// Presets as "technique/name".
+struct PresetNames {
+    std::vector<std::string> own, builtIn;
 };
 
 // What a hand asked for that needs more than the session: the workspace carries it out.
 struct Requests {
     std::optional<SceneRequest> openScene;
-    std::optional<std::string> loadPreset, savePreset;
+    std::optional<std::string> loadPreset;                           // "technique/name"
+    std::optional<std::string> savePreset, deletePreset;             // names of the chosen technique's presets
+    std::optional<std::pair<std::string, std::string>> renamePreset; // from, to
     bool chooseFile = false;
     bool listPresets = false;
     bool restart = false; // forget all history
@@ -37,7 +47,10 @@ public:
     // Draws into the current ImGui window.
     Requests draw(Session& session, const SceneFacts& facts, Playback& playback);
 
-    void setPresetNames(std::vector<std::string> names) { presetNames_ = std::move(names); }
+    void setPresetNames(PresetNames names) { presetNames_ = std::move(names); }
+    // The values are now those of this preset of the chosen technique; an empty name: of none.
+    void takePreset(const TechniqueShelf& techniques, std::string_view name);
+    void renamePreset(std::string_view name) { preset_ = name; } // the chosen one
     bool lightShown() const { return showLight_; }
 
 private:
@@ -50,8 +63,10 @@ private:
 
     ParameterPanel parameters_;
     std::vector<std::string> builtIns_ = builtInScenes();
-    std::vector<std::string> presetNames_;
-    const Scene* shownScene_ = nullptr; // whose path stands in the path field
+    PresetNames presetNames_;
+    std::string presetOf_, preset_;      // technique and name of the preset taken last
+    std::vector<uint32_t> presetValues_; // what it gave the parameters
+    const Scene* shownScene_ = nullptr;  // whose path stands in the path field
     TextField<4096> path_;
     TextField<101> presetName_;
     bool showLight_ = false;

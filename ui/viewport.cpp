@@ -106,7 +106,7 @@ void Viewport::render(Session& session, Renderer& renderer, Timing timing, bool 
     fingerprint(session, renderer);
     const bool changed = now_ != drawn_ || restart_;
     // A few frames more until the timer queries of the last change have come in, unless frames are dear.
-    const bool settling = frames_ < settledFrame_ && renderer.runner().timer().frameMilliseconds() < dearFrame;
+    const bool settling = frames_ < settledFrame_ && renderer.runner().timer().newest().milliseconds < dearFrame;
     // After a failure only a change can help.
     const bool living =
         trouble_.empty() && (always || settling || session.timeStep != 0 || !renderer.flow().pasts().empty());

@@ -53,12 +53,13 @@ bool section(const char* title, bool openAtFirst) {
     return ImGui::CollapsingHeader(title, openAtFirst ? ImGuiTreeNodeFlags_DefaultOpen : 0);
 }
 
-void subtitle(std::string_view title) {
+void subtitle(std::string_view title, float reserved) {
     ImGui::Spacing();
+    if (reserved > 0) ImGui::AlignTextToFramePadding();
     text(colour::muted, title);
     const ImVec2 min = ImGui::GetItemRectMin(), max = ImGui::GetItemRectMax();
     const float y = (min.y + max.y) / 2, gap = ImGui::GetStyle().ItemInnerSpacing.x;
-    const float right = ImGui::GetWindowPos().x + ImGui::GetWindowContentRegionMax().x;
+    const float right = ImGui::GetWindowPos().x + ImGui::GetWindowContentRegionMax().x - reserved;
     if (max.x + gap < right)
         ImGui::GetWindowDrawList()->AddLine({max.x + gap, y}, {right, y}, ImGui::GetColorU32(ImGuiCol_Separator));
 }

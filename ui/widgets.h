@@ -45,7 +45,8 @@ ShortText extentText(const Extent& extent);
 // A foldable part of the side panel.
 bool section(const char* title, bool openAtFirst);
 // A quiet title with a line, inside a section.
-void subtitle(std::string_view title);
+// `reserved` units on the right stay free.
+void subtitle(std::string_view title, float reserved = 0);
 
 // Starts a row: the label on the left, the next control fills the rest but for `reserved` units on its right.
 void row(std::string_view label, float reserved = 0);

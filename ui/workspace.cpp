@@ -43,6 +43,7 @@ Workspace::Workspace(Session& session, Renderer& renderer, SceneLoader& loader, 
     , actions_(std::move(actions))
     , facts_(session.scene) {
     playback_.playing = session.timeStep != 0;
+    side_.setPresetNames(actions_.presetNames());
 }
 
 template <class Action> bool Workspace::attempt(Action&& action) {
@@ -58,6 +59,7 @@ template <class Action> bool Workspace::attempt(Action&& action) {
 
 void Workspace::openScene(SceneRequest request) {
     attempt([&] {
+        actions_.readPicture(request);
         loader_.start(findScene(request.nameOrFile), request.choice);
         loading_ = std::move(request);
     });
@@ -70,7 +72,7 @@ void Workspace::say(std::string message) {
 
 bool Workspace::moving() const {
     return viewport_.renderedNow() || loader_.progress() || playback_.playing || messageSeconds_ > 0 ||
-           drawer_ == Drawer::Timings;
+           windowPictureIn_ > 0 || !saving_.empty() || drawer_ == Drawer::Timings;
 }
 
 Timing Workspace::timing() const {
@@ -115,12 +117,7 @@ void Workspace::draw(const Keys& keys, float seconds, float pixelsPerUnit) {
     }
     ImGui::End();
     ImGui::PopStyleVar();
-    if (viewport_.renderedNow()) {
-        if (timed_ != &session_.techniques.card() || timedHow_ != timing()) timings_.forget();
-        timed_ = &session_.techniques.card();
-        timedHow_ = timing();
-        timings_.add(renderer_.runner());
-    }
+    noteTimes();
 
     if (drawer_ != Drawer::Closed) {
         if (beginFixed("drawer", {0, screen.y - drawerHeight}, {drawerWidth, drawerHeight},
@@ -133,6 +130,8 @@ void Workspace::draw(const Keys& keys, float seconds, float pixelsPerUnit) {
     if (drawer_ != Drawer::Buffers) buffers_.close();
     carryOut(requests);
     if (keys.picture) takePicture();
+    if (keys.windowPicture) windowPictureIn_ = 2;
+    collectSaved();
     dialogs(keys);
     messageSeconds_ -= seconds;
 }
@@ -167,6 +166,8 @@ void Workspace::bar(ImVec2 size) {
         ImGui::SameLine();
         if (ImGui::Button("Picture")) takePicture();
         tooltip("Save what the view shows as a PNG (F12)");
+        ImGui::SameLine(0, 1);
+        pictureMenu();
         ImGui::SameLine();
         if (toggleButton("Buffers", drawer_ == Drawer::Buffers)) toggle(Drawer::Buffers);
         tooltip("Look into every image of the frame (B)");
@@ -185,18 +186,23 @@ void Workspace::bar(ImVec2 size) {
 
 void Workspace::status() {
     const bool approximate = renderer_.softwareRenderer() && timedHow_ == Timing::Queries;
-    const double frame = timings_.frameMedian();
+    const double frame = timings_.frameMedian(), cost = timings_.costMedian();
     const ShortText time =
-        frame > 0 ? ShortText("{:.2f} ms{}", frame, approximate ? " approximate" : "") : ShortText("– ms");
-    const ShortText line("{} × {}    {}", session_.size.x, session_.size.y, time.view());
+        frame > 0 ? ShortText("cost {:.2f} ms    frame {:.2f} ms{}", cost, frame, approximate ? "  approximate" : "")
+                  : ShortText("– ms");
     ImGui::AlignTextToFramePadding();
-    if (ImGui::CalcTextSize(line.begin(), line.end()).x > ImGui::GetContentRegionAvail().x) return;
+    const float room = ImGui::GetContentRegionAvail().x;
     ImGui::PushStyleColor(ImGuiCol_Text, colour::muted);
-    rightText(line.view());
+    for (const ShortText& line : {ShortText("{} × {}    {}", session_.size.x, session_.size.y, time.view()), time,
+                                  ShortText("{:.2f} ms", frame), ShortText("")})
+        if (ImGui::CalcTextSize(line.begin(), line.end()).x <= room) {
+            rightText(line.view());
+            break;
+        }
     ImGui::PopStyleColor();
-    tooltip(approximate ? "The frame's time on the renderer. Timer queries of a software renderer leave work out; open "
-                          "the timings for honest numbers."
-                        : "The view's pixels and the frame's time on the renderer");
+    tooltip(approximate ? "The view's pixels, the technique's cost and the frame's time. Timer queries of a software "
+                          "renderer leave work out; open the timings for honest numbers."
+                        : "The view's pixels, the technique's cost and the frame's time on the renderer");
 }
 
 void Workspace::splitter(ImVec2 corner, float width, float height, float highest) {
@@ -219,8 +225,8 @@ void Workspace::drawer(float pixelsPerUnit) {
     if (drawer_ == Drawer::Buffers) {
         if (const auto shot = buffers_.draw(renderer_, viewport_.frames(), pixelsPerUnit))
             attempt([&] { say(fmt::format("Saved {}", actions_.saveBuffer(*shot).string())); });
-    } else {
-        timings_.draw(renderer_, renderer_.softwareRenderer() && timedHow_ == Timing::Queries);
+    } else if (timings_.draw(renderer_, renderer_.softwareRenderer() && timedHow_ == Timing::Queries)) {
+        exportTimings();
     }
 }
 
@@ -228,10 +234,27 @@ void Workspace::carryOut(Requests& requests) {
     if (requests.restart) viewport_.restart();
     if (requests.chooseFile) chooser_.open(facts_.scene->file.parent_path());
     if (requests.openScene) openScene(std::move(*requests.openScene));
-    if (requests.listPresets) side_.setPresetNames(actions_.presetNames());
-    if (requests.loadPreset && attempt([&] { actions_.loadPreset(*requests.loadPreset); })) viewport_.restart();
-    if (requests.savePreset && attempt([&] { actions_.savePreset(*requests.savePreset); }))
+    if (requests.loadPreset && attempt([&] { actions_.loadPreset(*requests.loadPreset); })) {
+        side_.takePreset(session_.techniques, requests.loadPreset->substr(requests.loadPreset->find('/') + 1));
+        viewport_.restart();
+    }
+    if (requests.savePreset && attempt([&] { actions_.savePreset(*requests.savePreset); })) {
+        side_.takePreset(session_.techniques, *requests.savePreset);
         say(fmt::format("Preset {} saved", *requests.savePreset));
+    }
+    if (requests.renamePreset) {
+        const auto& [name, newName] = *requests.renamePreset;
+        if (attempt([&] { actions_.renamePreset(name, newName); })) {
+            side_.renamePreset(newName);
+            say(fmt::format("Preset {} is now {}", name, newName));
+        }
+    }
+    if (requests.deletePreset && attempt([&] { actions_.deletePreset(*requests.deletePreset); })) {
+        side_.takePreset(session_.techniques, "");
+        say(fmt::format("Preset {} deleted", *requests.deletePreset));
+    }
+    if (requests.listPresets || requests.savePreset || requests.renamePreset || requests.deletePreset)
+        side_.setPresetNames(actions_.presetNames());
 }
 
 void Workspace::takeLoaded() {
@@ -244,12 +267,13 @@ void Workspace::takeLoaded() {
     }
     session_.setScene(std::move(loaded->opened));
     renderer_.take(std::move(loaded->prepared));
+    const std::string note = loading_.restore ? loading_.restore(session_) : std::string();
     facts_ = SceneFacts(session_.scene);
     playback_ = {};
     viewport_.invalidate();
     viewport_.restart();
     timings_.forget();
-    say(fmt::format("{}: {} triangles", session_.scene->name, facts_.triangles));
+    say(note.empty() ? fmt::format("{}: {} triangles", session_.scene->name, facts_.triangles) : note);
 }
 
 void Workspace::loadingBar(ImVec2 corner, float width, bool cancel) {
@@ -281,7 +305,70 @@ void Workspace::loadingBar(ImVec2 corner, float width, bool cancel) {
 
 void Workspace::takePicture() {
     if (!renderer_.hasFrame()) return say("There is no picture to save yet");
-    attempt([&] { say(fmt::format("Saved {}", actions_.savePicture().string())); });
+    attempt([&] { saving_.push_back(actions_.savePicture(false)); });
+}
+
+void Workspace::drawn() {
+    if (windowPictureIn_ == 0) return;
+    // The first frame closes menus and tooltips; no message shall lie over the view.
+    messageSeconds_ = 0;
+    if (--windowPictureIn_ == 0) attempt([&] { saving_.push_back(actions_.savePicture(true)); });
+}
+
+void Workspace::collectSaved() {
+    for (size_t i = 0; i < saving_.size();) {
+        if (saving_[i].wait_for(std::chrono::seconds(0)) != std::future_status::ready) {
+            ++i;
+            continue;
+        }
+        std::future<std::filesystem::path> saved = std::move(saving_[i]);
+        saving_.erase(saving_.begin() + static_cast<ptrdiff_t>(i));
+        attempt([&] { say(fmt::format("Saved {}", saved.get().string())); });
+    }
+}
+
+void Workspace::pictureMenu() {
+    if (ImGui::ArrowButton("picture menu", ImGuiDir_Down)) ImGui::OpenPopup("pictures");
+    tooltip("What to save, and where");
+    const ImVec2 button = ImGui::GetItemRectMin();
+    ImGui::SetNextWindowPos({button.x, ImGui::GetItemRectMax().y + ImGui::GetStyle().FramePadding.y});
+    if (!ImGui::BeginPopup("pictures")) return;
+    if (ImGui::MenuItem("The view", "F12")) takePicture();
+    if (ImGui::MenuItem("The whole window, with its panels", "Shift+F12")) windowPictureIn_ = 2;
+    ImGui::Separator();
+    text(colour::muted, "Into");
+    ImGui::SameLine();
+    text(actions_.picturesFolder().string());
+    if (ImGui::MenuItem("Another folder…")) folderChooser_.open(actions_.picturesFolder());
+    ImGui::EndPopup();
+}
+
+void Workspace::noteTimes() {
+    if (!renderer_.hasFrame()) return;
+    if (viewport_.renderedNow() && timedHow_ != timing()) {
+        timings_.forget();
+        timedHow_ = timing();
+    }
+    renderer_.pollTimes();
+    const ParameterSet& parameters = session_.techniques.parameters();
+    work_.clear();
+    for (const char c : session_.techniques.card().id) work_.push_back(static_cast<unsigned char>(c));
+    for (const Parameter* parameter : parameters.all()) work_.push_back(parameter->bits());
+    work_.push_back(static_cast<uint32_t>(session_.size.x));
+    work_.push_back(static_cast<uint32_t>(session_.size.y));
+    const PassTimer& timer = renderer_.runner().timer();
+    timings_.add(timer.newest(), timer.frame(), work_);
+}
+
+void Workspace::exportTimings() {
+    const std::string_view method = timedHow_ == Timing::Finish    ? "glFinish and clock"
+                                    : renderer_.softwareRenderer() ? "timer queries, approximate"
+                                                                   : "timer queries";
+    attempt([&] {
+        const std::string table =
+            timings_.csv(renderer_.flow(), session_.techniques.card().id, renderer_.driver(), method);
+        say(fmt::format("Saved {}", actions_.saveTimings(table).string()));
+    });
 }
 
 void Workspace::message(ImVec2 corner, float width) {
@@ -304,6 +391,9 @@ void Workspace::message(ImVec2 corner, float width) {
 
 void Workspace::dialogs(const Keys& keys) {
     if (const auto file = chooser_.draw(keys.escape)) openScene({file->string()});
+    if (const auto folder = folderChooser_.draw(keys.escape))
+        if (attempt([&] { actions_.setPicturesFolder(*folder); }))
+            say(fmt::format("Pictures go into {}", actions_.picturesFolder().string()));
     helpDialog(keys.escape && !openHelp_);
     errorDialog(keys.escape && !openError_);
 }

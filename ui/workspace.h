@@ -12,16 +12,25 @@
 
 #include <filesystem>
 #include <functional>
+#include <future>
 #include <optional>
 
 namespace penumbra {
 
 // What the panels ask of the program around them. All may throw InputError and have changed nothing then.
 struct Actions {
-    std::function<std::vector<std::string>()> presetNames; // "technique/name"
-    std::function<void(const std::string&name)> loadPreset, savePreset;
-    std::function<std::filesystem::path()> savePicture; // of the last frame; where it is
+    // Turns the request for a picture that tells how it was made into one for its scene and the rest.
+    std::function<void(SceneRequest& request)> readPicture;
+    std::function<PresetNames()> presetNames;
+    std::function<void(const std::string& fullName)> loadPreset;          // "technique/name"
+    std::function<void(const std::string&name)> savePreset, deletePreset; // of the chosen technique
+    std::function<void(const std::string& name, const std::string& newName)> renamePreset;
+    // Of the last frame, or of the whole window as it stands in the back buffer; where it is, once it is written.
+    std::function<std::future<std::filesystem::path>(bool wholeWindow)> savePicture;
     std::function<std::filesystem::path(const BufferShot&)> saveBuffer;
+    std::function<std::filesystem::path(const std::string& csv)> saveTimings; // where it is
+    std::function<std::filesystem::path()> picturesFolder;
+    std::function<void(const std::filesystem::path& folder)> setPicturesFolder; // from now on
 };
 
 class Workspace {
@@ -31,6 +40,10 @@ public:
     // Builds one ImGui frame and renders the view. `seconds` since the last one; `pixelsPerUnit`: the framebuffer's
     // scale.
     void draw(const Keys& keys, float seconds, float pixelsPerUnit);
+
+    // To be called when the frame stands in the back buffer: takes the picture of the whole window if one was asked
+    // for.
+    void drawn();
 
     // Loads it beside what is shown; a bad file shows a message and changes nothing.
     void openScene(SceneRequest request);
@@ -51,6 +64,10 @@ private:
     void takeLoaded();
     void loadingBar(ImVec2 corner, float width, bool cancel);
     void takePicture();
+    void pictureMenu();
+    void collectSaved();
+    void noteTimes();
+    void exportTimings();
     void dialogs(const Keys& keys);
     void helpDialog(bool close);
     void errorDialog(bool close);
@@ -71,12 +88,14 @@ private:
     Viewport viewport_;
     BufferPanel buffers_;
     TimingsPanel timings_;
-    FileChooser chooser_;
+    FileChooser chooser_, folderChooser_{FileChooser::Pick::Folder};
 
     Drawer drawer_ = Drawer::Closed;
     std::optional<float> drawerHeight_; // in font heights, once it was dragged
-    const Card* timed_ = nullptr;       // whose times the timings panel has gathered, and how
-    Timing timedHow_ = Timing::Off;
+    Timing timedHow_ = Timing::Off;     // how the times that the timings panel has gathered were measured
+    std::vector<uint32_t> work_;        // what decides how much a frame has to do
+    int windowPictureIn_ = 0;           // frames until the picture of the whole window is taken; 0: none is
+    std::vector<std::future<std::filesystem::path>> saving_; // pictures on their way
 
     SceneRequest loading_; // what the loader is at
     std::string error_;

@@ -26,6 +26,7 @@ public:
     const Texture& texture(const Flow& flow, PastImage image) const;
 
     const PassTimer& timer() const { return timer_; }
+    void pollTimes() { timer_.poll(); }
 
 private:
     struct Slot {

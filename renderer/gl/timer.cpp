@@ -25,7 +25,7 @@ void PassTimer::collect(Round& round) {
     GLint ready = 0;
     glGetQueryObjectiv(round.queries[round.marks.size()], GL_QUERY_RESULT_AVAILABLE, &ready);
     if (!ready) return;
-    times_.clear();
+    newest_.passes.clear();
     GLuint64 first = 0, before = 0, now = 0;
     glGetQueryObjectui64v(round.queries[0], GL_QUERY_RESULT, &first);
     before = first;
@@ -34,32 +34,40 @@ void PassTimer::collect(Round& round) {
         add(round.marks[i].stage, round.marks[i].label, static_cast<double>(now - before) * 1e-6);
         before = now;
     }
-    frameMilliseconds_ = static_cast<double>(before - first) * 1e-6;
+    newest_.milliseconds = static_cast<double>(before - first) * 1e-6;
+    newest_.number = round.frame;
     round.pending = false;
 }
 
 void PassTimer::add(Stage stage, int label, double ms) {
-    const auto known = std::find_if(times_.begin(), times_.end(), [&](const PassTime& t) { return t.label == label; });
-    if (known != times_.end())
+    const auto known =
+        std::find_if(newest_.passes.begin(), newest_.passes.end(), [&](const PassTime& t) { return t.label == label; });
+    if (known != newest_.passes.end())
         known->milliseconds += ms;
     else
-        times_.push_back({stage, label, ms});
+        newest_.passes.push_back({stage, label, ms});
 }
 
 void PassTimer::beginFrame(Timing timing) {
     timing_ = timing;
+    ++frame_;
     if (timing == Timing::Queries) {
+        poll();
         round_ = (round_ + 1) % rounds_.size();
-        for (size_t i = 0; i < rounds_.size(); ++i) { // oldest first
-            Round& round = rounds_[(round_ + i) % rounds_.size()];
-            if (round.pending) collect(round);
-        }
         rounds_[round_].marks.clear();
+        rounds_[round_].frame = frame_;
         stamp(rounds_[round_], 0);
     } else if (timing == Timing::Finish) {
         glFinish();
-        times_.clear();
+        newest_.passes.clear();
         frameStart_ = passStart_ = Clock::now();
+    }
+}
+
+void PassTimer::poll() {
+    for (size_t i = 1; i <= rounds_.size(); ++i) { // oldest first
+        Round& round = rounds_[(round_ + i) % rounds_.size()];
+        if (round.pending) collect(round);
     }
 }
 
@@ -78,7 +86,10 @@ void PassTimer::endPass(Stage stage, int label) {
 
 void PassTimer::endFrame() {
     if (timing_ == Timing::Queries) rounds_[round_].pending = true;
-    if (timing_ == Timing::Finish) frameMilliseconds_ = milliseconds(Clock::now() - frameStart_);
+    if (timing_ == Timing::Finish) {
+        newest_.milliseconds = milliseconds(Clock::now() - frameStart_);
+        newest_.number = frame_;
+    }
 }
 
 } // namespace penumbra

@@ -24,15 +24,25 @@ struct PassTime {
     double milliseconds;
 };
 
+// Times that have come in.
+struct TimedFrame {
+    uint64_t number = 0;            // from 1 on; 0: none yet
+    double milliseconds = 0;        // from the first pass to the end of the last one
+    std::vector<PassTime> passes{}; // in their order; those of one label are summed
+};
+
 class PassTimer {
 public:
     void beginFrame(Timing timing);
     void endPass(Stage stage, int label);
     void endFrame();
+    // Takes in what timer queries have come in since; never stalls. beginFrame does so too.
+    void poll();
 
-    // The newest frame whose times are known, in pass order; passes of one label are summed.
-    const std::vector<PassTime>& times() const { return times_; }
-    double frameMilliseconds() const { return frameMilliseconds_; } // first pass to last; 0: not known yet
+    // The newest frame whose times are known.
+    const TimedFrame& newest() const { return newest_; }
+    // The number of the frame begun last.
+    uint64_t frame() const { return frame_; }
 
 private:
     using Clock = std::chrono::steady_clock;
@@ -44,6 +54,7 @@ private:
     struct Round {
         std::vector<GLuint> queries;
         std::vector<Mark> marks;
+        uint64_t frame = 0;
         bool pending = false;
         Round() = default;
         Round(const Round&) = delete;
@@ -54,11 +65,11 @@ private:
     void add(Stage stage, int label, double milliseconds);
 
     Timing timing_ = Timing::Off;
+    uint64_t frame_ = 0;
     std::array<Round, 4> rounds_{};
     size_t round_ = 0;
     Clock::time_point frameStart_, passStart_;
-    std::vector<PassTime> times_;
-    double frameMilliseconds_ = 0;
+    TimedFrame newest_;
 };
 
 } // namespace penumbra

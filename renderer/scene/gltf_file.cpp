@@ -7,6 +7,7 @@
 #include <meshoptimizer.h>
 #include <stb_image.h>
 #include <webp/decode.h>
+#include <zlib.h>
 
 #include <algorithm>
 #include <array>
@@ -147,6 +148,7 @@ GltfFile::GltfFile(const std::filesystem::path& file, std::vector<uint8_t> bytes
                    std::span<const std::string_view> knownExtensions)
     : file_(file)
     , fileBytes_(std::move(bytes)) {
+    addToChecksum(fileBytes_);
     if (fileBytes_.empty()) refuse("file", "is empty; expected glTF 2.0");
     if (fileBytes_.size() >= 4 && littleEndian32(fileBytes_, 0) == glbMagic)
         readBinary();
@@ -424,7 +426,7 @@ std::optional<TextureImage> GltfFile::image(size_t index) {
     return result;
 }
 
-std::vector<uint8_t> GltfFile::resolve(const std::string& uri, const std::string& place) const {
+std::vector<uint8_t> GltfFile::resolve(const std::string& uri, const std::string& place) {
     const std::string_view scheme = schemeOf(uri);
     if (scheme.empty()) return readBelowFolder(uri, place);
     if (scheme != "data") refuse(place, fmt::format("uri '{}' is not a file beside the scene", uri.substr(0, 100)));
@@ -437,7 +439,7 @@ std::vector<uint8_t> GltfFile::resolve(const std::string& uri, const std::string
 }
 
 // A scene is often somebody else's: it may name only files that lie below its own folder, links followed.
-std::vector<uint8_t> GltfFile::readBelowFolder(const std::string& uri, const std::string& place) const {
+std::vector<uint8_t> GltfFile::readBelowFolder(const std::string& uri, const std::string& place) {
     namespace fs = std::filesystem;
     const std::string namedPlace = fmt::format("{} '{}'", place, uri);
     const std::optional<std::string> decoded = percentDecoded(uri);
@@ -449,7 +451,13 @@ std::vector<uint8_t> GltfFile::readBelowFolder(const std::string& uri, const std
     const auto [folderEnd, targetEnd] = std::mismatch(folder.begin(), folder.end(), target.begin(), target.end());
     if (error || folderEnd != folder.end())
         refuse(namedPlace, "lies outside the scene's folder; expected a file below it");
-    return readFile(target, oneLine(fmt::format("{}: {}", file_.string(), namedPlace)));
+    std::vector<uint8_t> bytes = readFile(target, oneLine(fmt::format("{}: {}", file_.string(), namedPlace)));
+    addToChecksum(bytes);
+    return bytes;
+}
+
+void GltfFile::addToChecksum(std::span<const uint8_t> bytes) {
+    checksum_ = static_cast<uint32_t>(::crc32_z(checksum_, bytes.data(), bytes.size()));
 }
 
 void GltfFile::refuse(const std::string& place, const std::string& expectation) const {

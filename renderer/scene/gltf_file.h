@@ -27,6 +27,8 @@ public:
 
     const std::filesystem::path& path() const { return file_; }
     const nlohmann::json& document() const { return json_; }
+    // CRC-32 of the file's bytes followed by those of the files that it named, in the order in which they were read.
+    uint32_t checksum() const { return checksum_; }
 
     // The bytes of a buffer or buffer view, decompressed where EXT_meshopt_compression is used. Checked against the
     // real bytes. Throws InputError; `user` says on whose behalf ("accessor 3").
@@ -47,8 +49,9 @@ private:
                           const std::string& place) const;
     std::span<const uint8_t> bytesOfView(const nlohmann::json& description, const std::string& place);
     std::vector<uint8_t> decodeMeshopt(const nlohmann::json& compressed, size_t byteLength, const std::string& place);
-    std::vector<uint8_t> resolve(const std::string& uri, const std::string& place) const;
-    std::vector<uint8_t> readBelowFolder(const std::string& uri, const std::string& place) const;
+    std::vector<uint8_t> resolve(const std::string& uri, const std::string& place);
+    std::vector<uint8_t> readBelowFolder(const std::string& uri, const std::string& place);
+    void addToChecksum(std::span<const uint8_t> bytes);
 
     struct Bytes {
         bool loaded = false;
@@ -58,6 +61,7 @@ private:
     std::filesystem::path file_;
     std::vector<uint8_t> fileBytes_;
     nlohmann::json json_;
+    uint32_t checksum_ = 0;
     std::span<const uint8_t> binaryChunk_;
     bool hasBinaryChunk_ = false;
     std::vector<Bytes> buffers_, decodedViews_;

@@ -105,6 +105,7 @@ public:
         for (size_t i = 0; i < model_.nodes.size(); ++i) checkSkin(i);
         for (size_t i = 0; i < model_.animations.size(); ++i) addAnimation(i);
         checkExtent();
+        scene_.checksum = file_.checksum();
         return std::move(scene_);
     }
 

@@ -147,6 +147,7 @@ struct NamedLight {
 struct Scene {
     std::string name;                  // for people and file names: "courtyard"
     std::filesystem::path file;        // empty for scenes made in memory
+    uint32_t checksum = 0;             // CRC-32 of the file and of those that it names
     std::vector<glm::vec3> positions;  // one per vertex
     std::vector<glm::vec3> normals;    // one per vertex; zero: flat, the triangle's own
     std::vector<glm::vec2> uvs;        // one per vertex

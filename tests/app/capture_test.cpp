@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 // Pictures that the program draws without a window.
 #include "app/headless.h"
+#include "app/image_file.h"
+#include "renderer/core/technique.h"
 #include "tests/app/picture_reader.h"
 #include "tests/app/program.h"
 #include "tests/catch.h"
@@ -127,17 +129,23 @@ TEST_CASE("pictures are upright and tell how they were made") {
     CHECK(png.width == 160);
     CHECK(png.height == 90);
     CHECK(png.channels.size() == 3);
-    CHECK(png.facts.at("Software").starts_with("Penumbra "));
-    CHECK(png.facts.at("scene") == "two-boxes");
-    CHECK(png.facts.at("technique") == "pcf");
-    CHECK(png.facts.at("parameters") == "{\"kernel\":9}");
-    CHECK(png.facts.at("size") == "160x90");
-    CHECK(png.facts.at("seed") == "7");
-    CHECK_FALSE(png.facts.at("driver").empty());
+    CHECK(png.facts.size() == 1);
+    const auto facts = nlohmann::json::parse(png.facts.at("penumbra"));
+    CHECK(facts.at("program").get<std::string>().starts_with("Penumbra "));
+    CHECK(facts.at("scene").at("file") == "two-boxes");
+    CHECK(facts.at("scene").at("checksum").get<std::string>().starts_with("crc32 "));
+    CHECK(facts.at("technique") == "pcf");
+    CHECK(facts.at("parameters").at("kernel") == 9);
+    CHECK(facts.at("parameters").size() == makeTechnique(findCard("pcf"))->parameters().all().size());
+    CHECK(facts.at("size") == nlohmann::json{160, 90});
+    CHECK(facts.at("seed") == 7);
+    CHECK(facts.at("frames") == 1);
+    CHECK_FALSE(facts.at("driver").get<std::string>().empty());
 
     captured(folder / "a.exr", {"--technique", "pcf", "--set", "kernel=9", "--seed", "7"});
     const ReadPicture exr = readExr(folder / "a.exr");
-    CHECK(exr.facts == png.facts);
+    CHECK(exr.facts.size() == facts.size());
+    for (const auto& [key, fact] : facts.items()) CHECK(nlohmann::json::parse(exr.facts.at("penumbra." + key)) == fact);
     CHECK(exr.channels == std::vector<std::string>{"B", "G", "R"});
 
     // Looking down at a floor, what is seen comes nearer from row to row.
@@ -148,15 +156,133 @@ TEST_CASE("pictures are upright and tell how they were made") {
     CHECK(depth.values[160 * 89] > 0);
 }
 
-TEST_CASE("what was told is told again: the camera of a picture's facts gives the same picture") {
+TEST_CASE("a picture is made again from what its file tells, to the last bit") {
     const TemporaryFolder folder;
-    captured(folder / "a.png",
-             {"--camera", "-0.5,1.25,4.1,0.3,-0.2,0,37.5", "--light-shape", "disk", "--time", "0.25"});
-    const auto facts = readPng(folder / "a.png").facts;
-    captured(folder / "b.png",
-             {"--camera", facts.at("camera"), "--light", facts.at("light"), "--light-shape", facts.at("light-shape"),
-              "--light-size", facts.at("light-size"), "--time", facts.at("time"), "--ground", facts.at("ground")});
-    CHECK(readAll(folder / "a.png") == readAll(folder / "b.png"));
+    const auto again = [&](std::vector<std::string> arguments) {
+        arguments.insert(arguments.begin(), "capture");
+        const Result result = runProgram(arguments);
+        INFO(result.errors);
+        CHECK(result.exitCode == 0);
+    };
+    const std::vector<std::vector<std::string>> sorts = {
+        {},
+        {"--camera", "-0.5,1.25,4.1,0.3,-0.2,0,37.5", "--light-shape", "disk", "--light-size", "0.37", "--time",
+         "0.25"},
+        {"--technique", "pcf", "--set", "shape=gaussian", "--set", "sigma=0.7", "--ground", "off", "--seed", "5"},
+        {"--light", "3.3,5.1,0.7,0.1,0.2,0.3", "--light-shape", "directional", "--light-size", "3", "--exposure",
+         "1.1"},
+        {"--show", "shadow", "--ambient", "0.1", "--frames", "5", "--play"},
+        {"--buffer", "scene.depth"},
+        {"--buffer", "shadow", "--preset", "pcss/64-64"},
+    };
+    for (const std::vector<std::string>& more : sorts) {
+        INFO((more.empty() ? std::string() : more[0]));
+        for (const std::string ending : {".png", ".exr"}) {
+            captured(folder / ("a" + ending), more);
+            again({"--like", folder / ("a" + ending), "-o", folder / ("b" + ending)});
+            CHECK(readAll(folder / "a.png") == readAll(folder / "b.png"));
+        }
+        again({"--like", folder / "a.exr", "-o", folder / "c.png"}); // either tells enough for both
+        CHECK(readAll(folder / "a.png") == readAll(folder / "c.png"));
+    }
+    SECTION("a scene that moves, at the moment of its last frame") {
+        again(
+            {"moving-caster", "-o", folder / "a.png", "--size", "160x90", "--time", "0.1", "--play", "--frames", "8"});
+        again({"--like", folder / "a.png", "-o", folder / "b.png"});
+        CHECK(readAll(folder / "a.png") == readAll(folder / "b.png"));
+        again({"moving-caster", "-o", folder / "c.png", "--size", "160x90", "--time", "0.1"});
+        CHECK(readAll(folder / "a.png") != readAll(folder / "c.png"));
+    }
+    SECTION("options beside it win") {
+        captured(folder / "a.png", {"--technique", "pcf", "--set", "kernel=9"});
+        captured(folder / "b.png", {"--technique", "pcf", "--set", "kernel=9", "--seed", "3", "--set", "slope-bias=2"});
+        again({"--like", folder / "a.png", "--seed", "3", "--set", "slope-bias=2", "-o", folder / "c.png"});
+        CHECK(readAll(folder / "b.png") == readAll(folder / "c.png"));
+        captured(folder / "b.npy", {"--technique", "pcf", "--set", "kernel=9", "--buffer", "shadow"});
+        again({"--like", folder / "a.png", "--buffer", "shadow", "-o", folder / "c.npy"});
+        CHECK(readAll(folder / "b.npy") == readAll(folder / "c.npy"));
+        again({"half-plane", "--like", folder / "a.png", "-o", folder / "c.png"});
+        CHECK(nlohmann::json::parse(readPng(folder / "c.png").facts.at("penumbra")).at("scene").at("name") ==
+              "half-plane");
+    }
+}
+
+TEST_CASE("pictures that tell nothing or nonsense are refused in one line") {
+    const TemporaryFolder folder;
+    const auto like = [&](const nlohmann::ordered_json& facts) {
+        writePicture(folder / "a.png", {1, 1, {"grey"}, {0}}, facts);
+        return folder / "a.png";
+    };
+    const auto refused = [&](const nlohmann::ordered_json& facts, const std::vector<std::string>& pieces) {
+        std::vector<std::string> all = pieces;
+        all.push_back((folder / "a.png").string() + ": ");
+        const Result result = runProgram({"capture", "--like", like(facts), "-o", folder / "b.png"});
+        INFO(facts.dump() << "\n" << result.errors);
+        CHECK(result.exitCode == 2);
+        CHECK(std::count(result.errors.begin(), result.errors.end(), '\n') == 1);
+        for (const std::string& piece : all) CHECK(contains(result.errors, piece));
+        CHECK_FALSE(std::filesystem::exists(folder / "b.png"));
+    };
+    captured(folder / "whole.png", {"--technique", "pcf"});
+    const auto whole = nlohmann::ordered_json::parse(readPng(folder / "whole.png").facts.at("penumbra"));
+    const auto with = [&](const char* pointer, const nlohmann::ordered_json& value) {
+        auto facts = whole;
+        facts[nlohmann::ordered_json::json_pointer(pointer)] = value;
+        return facts;
+    };
+    refused(nullptr, {"tells nothing"});
+    refused(with("/technique", "pcff"), {"'pcff'", "did you mean 'pcf'?"});
+    refused(with("/technique", 7), {"'technique'"});
+    refused(with("/parameters/kernal", 9), {"'kernal'", "did you mean 'kernel'?"});
+    refused(with("/parameters/kernel", 99), {"pcf.kernel", "1..63"});
+    refused(with("/camera/fov", 180), {"'camera.fov'", "1..170", "180"});
+    refused(with("/camera/eye", {1, 2}), {"'camera.eye'", "3 numbers"});
+    refused(with("/camera/eye", whole["camera"]["target"]), {"'camera'", "two points"});
+    refused(with("/camera/fovv", 30), {"'camera.fovv'", "did you mean 'fov'?"});
+    refused(with("/light/shape", "disc"), {"'light.shape'", "did you mean 'disk'?"});
+    refused(with("/light/size", {0, 0}), {"'light.size'"});
+    refused(with("/frames", 0), {"'frames'", "1.."});
+    refused(with("/frames", 1.5), {"'frames'", "whole"});
+    refused(with("/seed", -1), {"'seed'"});
+    refused(with("/size", {1, 100000}), {"'size'", "16384"});
+    refused(with("/ground", "on"), {"'ground'", "true or false"});
+    refused(with("/colour", 1), {"unknown fact 'colour'"});
+    refused(with("/scene/file", "courtyart"), {"its scene", "did you mean 'courtyard'?"});
+    refused(with("/scene/file", (folder / "gone.glb").string()), {"its scene", "gone.glb", "No such file"});
+
+    const Result other = runProgram({"capture", "--like", like(with("/scene/checksum", "crc32 00000000")), "-o",
+                                     folder / "b.png", "--size", "160x90"});
+    CHECK(other.exitCode == 0);
+    CHECK(other.errors.starts_with("note: " + (folder / "a.png").string() + ": its scene two-boxes has changed"));
+    CHECK(std::count(other.errors.begin(), other.errors.end(), '\n') == 1);
+    CHECK(std::filesystem::exists(folder / "b.png"));
+}
+
+TEST_CASE("the checksum of a scene holds the files that it names") {
+    const TemporaryFolder folder;
+    const auto checksum = [&] {
+        const Result result =
+            runProgram({"capture", folder / "a.gltf", "-o", folder / "a.png", "--size", "16x16", "--json"});
+        INFO(result.errors);
+        REQUIRE(result.exitCode == 0);
+        return nlohmann::json::parse(result.output).at("scene").at("checksum").get<std::string>();
+    };
+    const std::vector<float> corners = {-1, 0, -1, 1, 0, -1, 0, 0, 1};
+    const auto writeCorners = [&](float height) {
+        std::vector<float> values = corners;
+        values[1] = height;
+        writeAll(folder / "a.bin", std::string(reinterpret_cast<const char*>(values.data()), 36));
+    };
+    writeAll(folder / "a.gltf", R"({"asset": {"version": "2.0"}, "scene": 0, "scenes": [{"nodes": [0]}],
+        "nodes": [{"mesh": 0}], "meshes": [{"primitives": [{"attributes": {"POSITION": 0}}]}],
+        "accessors": [{"bufferView": 0, "componentType": 5126, "count": 3, "type": "VEC3", "min": [-1, -9, -1],
+                       "max": [1, 9, 1]}],
+        "bufferViews": [{"buffer": 0, "byteLength": 36}], "buffers": [{"byteLength": 36, "uri": "a.bin"}]})");
+    writeCorners(0);
+    const std::string before = checksum();
+    CHECK(checksum() == before);
+    writeCorners(0.5f);
+    CHECK(checksum() != before);
 }
 
 TEST_CASE("the options reach the picture") {

@@ -146,6 +146,10 @@ TEST_CASE("presets that are damaged are refused by file and key") {
     refuse(R"({"technique": "pcf", "parameters": {"sigma": 1e999}})", {"1e999"});
     refuse(R"({"technique": "pcf", "parameters": {"shape": "round"}})", {"pcf.shape", "box, gaussian, poisson"});
     refuse(std::string(2 << 20, '['), {"bytes"});
+    const std::string deep = std::string(250'000, '[') + std::string(250'000, ']');
+    refuse(R"({"technique": )" + deep + "}", {"'technique'"});
+    refuse(R"({"technique": "pcf", "parameters": )" + deep + "}", {"'parameters'", "array"});
+    refuse(R"({"technique": "pcf", "parameters": {"kernel": )" + deep + "}}", {"pcf.kernel", "array"});
     requireRefused({"list", "--preset", folder.path()}, {folder.path().string(), "directory"});
 }
 

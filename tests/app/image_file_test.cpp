@@ -86,12 +86,37 @@ TEST_CASE("a PNG rounds to the nearest of 256 steps and clamps") {
 
 TEST_CASE("facts are in the file, in any language") {
     const TemporaryFolder folder;
-    const Facts facts = {{"scene", "Hof mit Bäumen, ψ"}, {"parameters", "{\"kernel\":9}"}};
-    for (const auto& [name, read] : {Reader{"a.png", readPng}, Reader{"a.exr", readExr}}) {
-        writePicture(folder / name, ramp(4, 4, {"grey"}), facts);
-        const ReadPicture back = read(folder / name);
-        for (const auto& [key, text] : facts) CHECK(back.facts.at(key) == text);
+    const Json facts = {{"scene", "Hof mit Bäumen, ψ"}, {"parameters", {{"kernel", 9}}}, {"time", 0.1}};
+    writePicture(folder / "a.png", ramp(4, 4, {"grey"}), facts);
+    const ReadPicture png = readPng(folder / "a.png");
+    CHECK(png.facts.size() == 1);
+    CHECK(Json::parse(png.facts.at("penumbra")) == facts);
+    CHECK(readPictureFacts(folder / "a.png") == facts);
+
+    writePicture(folder / "a.exr", ramp(4, 4, {"grey"}), facts);
+    const ReadPicture exr = readExr(folder / "a.exr");
+    CHECK(exr.facts.size() == facts.size());
+    for (const auto& [key, fact] : facts.items()) CHECK(Json::parse(exr.facts.at("penumbra." + key)) == fact);
+    CHECK(readPictureFacts(folder / "a.exr") == facts);
+}
+
+TEST_CASE("pictures without facts have none, and broken ones are refused by name") {
+    const TemporaryFolder folder;
+    for (const std::string name : {"a.png", "a.exr"}) {
+        const auto file = folder / name;
+        writePicture(file, ramp(4, 4, {"grey"}));
+        CHECK(readPictureFacts(file).is_null());
+        writePicture(file, ramp(4, 4, {"grey"}), {{"scene", "a scene with a long name, so that there is much to cut"}});
+        const std::string whole = readAll(file);
+        for (const size_t size : {size_t{0}, size_t{3}, size_t{20}, size_t{60}, size_t{90}}) {
+            writeAll(file, whole.substr(0, size));
+            CHECK(contains(refusal([&] { readPictureFacts(file); }), file.string()));
+        }
+        writeAll(file, "no picture at all, but long enough for the header of one");
+        CHECK(contains(refusal([&] { readPictureFacts(file); }), file.string()));
     }
+    CHECK(contains(refusal([&] { readPictureFacts(folder / "missing.png"); }), "No such file"));
+    CHECK(contains(refusal([&] { readPictureFacts(folder.path()); }), "not a regular file"));
 }
 
 TEST_CASE("an unknown ending is refused with the known ones") {

@@ -13,7 +13,7 @@ struct ReadPicture {
     int width = 0, height = 0;
     std::vector<std::string> channels;        // as the file names them; empty names where it has none
     std::vector<float> values;                // top row first; of a PNG, 0 to 255
-    std::map<std::string, std::string> facts; // text chunks or string attributes
+    std::map<std::string, std::string> facts; // text chunks or string attributes by name
 };
 
 ReadPicture readPng(const std::filesystem::path& file);

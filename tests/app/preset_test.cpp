@@ -6,6 +6,7 @@
 
 #include <cmath>
 #include <cstdlib>
+#include <random>
 
 using namespace penumbra;
 using namespace penumbra::test;
@@ -56,6 +57,29 @@ TEST_CASE("a preset holds what differs from the defaults and resets the rest") {
     CHECK_FALSE(shelf.parameters().at("kernel").changed());
 }
 
+TEST_CASE("any values come back from a preset, and a file holds no default") {
+    const TemporaryFolder folder;
+    std::mt19937 random(7);
+    const auto share = [&] { return std::uniform_real_distribution<double>(0, 1)(random); };
+    for (int round = 0; round < 20; ++round)
+        for (const Card* card : catalogue()) {
+            TechniqueShelf written, read;
+            written.choose(card->id);
+            read.choose(card->id);
+            for (Parameter* p : read.parameters().all()) p->set(otherValue(*p));
+            for (Parameter* p : written.parameters().all())
+                if (share() < 0.5) p->set(p->nearest(p->spec().min + share() * (p->spec().max - p->spec().min)));
+            savePreset(folder / "a.json", written);
+            loadPreset(folder / "a.json", read);
+            CHECK(read.parameters() == written.parameters());
+            const auto json = nlohmann::json::parse(readAll(folder / "a.json"));
+            for (const auto& [id, value] : json["parameters"].items()) {
+                INFO(id);
+                CHECK(written.parameters().at(id).changed());
+            }
+        }
+}
+
 TEST_CASE("a preset that is refused changes nothing") {
     const TemporaryFolder folder;
     TechniqueShelf shelf;
@@ -94,14 +118,59 @@ TEST_CASE("a user's preset is found by its name, before a built-in one") {
     TechniqueShelf shelf;
     shelf.choose("pcf");
     shelf.assign("kernel=21");
-    savePreset(userPresetFile(shelf, "gaussian-9x9"), shelf);
-    savePreset(userPresetFile(shelf, "my own"), shelf);
+    savePreset(userPresetFile("pcf", "gaussian-9x9"), shelf);
+    savePreset(userPresetFile("pcf", "my own"), shelf);
     TechniqueShelf read;
     for (const char* name : {"pcf/gaussian-9x9", "pcf/my own"}) {
         loadPreset(findPreset(name), read);
         CHECK(read.parameters().at("kernel").value() == 21);
     }
     for (const char* name : {"", "..", "../x", "a/b", ".hidden", " x", "a\nb"})
-        CHECK_FALSE(refusal([&] { userPresetFile(shelf, name); }).empty());
+        CHECK_FALSE(refusal([&] { userPresetFile("pcf", name); }).empty());
+    ::unsetenv("PENUMBRA_CONFIG_DIR");
+}
+
+TEST_CASE("a user's presets are renamed and deleted, and nobody's else") {
+    const TemporaryFolder folder;
+    ::setenv("PENUMBRA_CONFIG_DIR", folder.path().c_str(), 1);
+    TechniqueShelf shelf;
+    shelf.choose("pcf");
+    shelf.assign("kernel=21");
+    for (const char* name : {"one", "two"}) savePreset(userPresetFile("pcf", name), shelf);
+    const std::string bytes = readAll(userPresetFile("pcf", "one"));
+    const auto names = [] { return ownPresetNames(); };
+
+    CHECK(contains(refusal([] { renamePreset("pcf", "one", "two"); }), "already"));
+    CHECK(contains(refusal([] { renamePreset("pcf", "three", "four"); }), "'three'"));
+    CHECK_FALSE(refusal([] { renamePreset("pcf", "one", "../one"); }).empty());
+    CHECK(contains(refusal([] { renamePreset("pcf", "gaussian-9x9", "mine"); }), "'gaussian-9x9'"));
+    CHECK(contains(refusal([] { deletePreset("pcf", "gaussian-9x9"); }), "'gaussian-9x9'"));
+    CHECK(names() == std::vector<std::string>{"pcf/one", "pcf/two"});
+
+    renamePreset("pcf", "one", "first of all");
+    CHECK(names() == std::vector<std::string>{"pcf/first of all", "pcf/two"});
+    CHECK(readAll(userPresetFile("pcf", "first of all")) == bytes);
+    deletePreset("pcf", "two");
+    CHECK(names() == std::vector<std::string>{"pcf/first of all"});
+    CHECK(builtInPresetNames().size() >= 4);
+    ::unsetenv("PENUMBRA_CONFIG_DIR");
+}
+
+TEST_CASE("the presets of the papers have the values of the papers, whatever the defaults") {
+    const TemporaryFolder folder;
+    ::setenv("PENUMBRA_CONFIG_DIR", folder.path().c_str(), 1);
+    const auto value = [](const char* preset, const char* parameter) {
+        TechniqueShelf shelf;
+        loadPreset(findPreset(preset), shelf);
+        return shelf.parameters().at(parameter).text();
+    };
+    for (const char* taps : {"16", "32", "64"}) {
+        const std::string name = std::string("pcss/") + taps + "-" + taps;
+        CHECK(value(name.c_str(), "search-taps") == taps);
+        CHECK(value(name.c_str(), "filter-taps") == taps);
+    }
+    CHECK(value("pcf/gaussian-9x9", "shape") == "gaussian");
+    CHECK(value("pcf/gaussian-9x9", "kernel") == "9");
+    CHECK(value("pcf/gaussian-9x9", "sigma") == "2.4");
     ::unsetenv("PENUMBRA_CONFIG_DIR");
 }

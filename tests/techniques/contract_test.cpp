@@ -228,3 +228,50 @@ TEST_CASE("the same frame twice is the same to the last bit") {
         CHECK((draw(s).psi.values == first.psi.values)); // in brackets: a failure does not print them all
     }
 }
+
+TEST_CASE("a parameter says that it is without effect exactly when no value of it changes the picture") {
+    // The sheet is open, so that it matters which faces cast.
+    const auto scene = SceneBuilder()
+                           .floor(3)
+                           .box({-1, 0, -1}, {0, 1, 0})
+                           .box({0.2f, 0.8f, 0.2f}, {0.9f, 1.0f, 1.4f})
+                           .quad({-1, 0.5f, 0.5f}, {-1, 0.5f, 1.5f}, {0, 0.5f, 1.5f}, {0, 0.5f, 0.5f})
+                           .build();
+    for (const Card* card : catalogue()) {
+        Session s = session(scene, card->id);
+        s.light.position = {1.5f, 3, 1}; // slanting, so that biases matter
+        const ParameterSet& set = s.techniques.parameters();
+        const auto hasEffect = [&](Parameter& p, const std::vector<float>& plain) {
+            const double before = p.value();
+            bool effect = false;
+            for (const double share : {0.0, 0.1, 0.5, 1.0}) {
+                const double value = p.nearest(p.spec().min + share * (p.spec().max - p.spec().min));
+                if (tooLarge(p, value)) continue;
+                p.set(value);
+                effect = effect || draw(s).psi.values != plain;
+            }
+            p.set(before);
+            return effect;
+        };
+        const std::vector<float> plain = draw(s).psi.values;
+        for (Parameter* p : set.all()) {
+            CAPTURE(p->qualifiedName());
+            CHECK(hasEffect(*p, plain) == p->active());
+        }
+        for (Parameter* choice : set.all()) // what hangs on a choice or a switch
+            if (choice->type() == Parameter::Type::Choice || choice->type() == Parameter::Type::Flag) {
+                for (double value = 0; value <= choice->spec().max; ++value) {
+                    choice->set(value);
+                    CAPTURE(choice->qualifiedName(), choice->text());
+                    const std::vector<float> chosen = draw(s).psi.values;
+                    for (Parameter* p : set.all()) {
+                        if (!p->spec().active) continue;
+                        CAPTURE(p->qualifiedName());
+                        CHECK_FALSE(p->spec().inactiveReason.empty());
+                        CHECK(hasEffect(*p, chosen) == p->active());
+                    }
+                }
+                choice->reset();
+            }
+    }
+}

@@ -43,6 +43,31 @@ public:
         ImGui::Render();
     }
 
+    void click(float x, float y) {
+        frame(x, y, false);
+        frame(x, y, true);
+        frame(x, y, false);
+    }
+    void rest() { // so that two clicks are no double click
+        for (int i = 0; i < 30; ++i) frame(0, 0, false);
+    }
+    void type(const std::string& characters) {
+        for (const char c : characters) ImGui::GetIO().AddInputCharacter(static_cast<unsigned>(c));
+        frame(0, 0, false);
+        key(ImGuiKey_Enter);
+    }
+    void key(ImGuiKey key) {
+        for (const bool down : {true, false}) {
+#if IMGUI_VERSION_NUM >= 18700
+            ImGui::GetIO().AddKeyEvent(key, down);
+#else
+            ImGui::GetIO().KeyMap[key] = key;
+            ImGui::GetIO().KeysDown[key] = down;
+#endif
+            frame(0, 0, false);
+        }
+    }
+
     void drag(float y, float from, float to) {
         frame(from, y, false);
         frame(from, y, true);
@@ -120,4 +145,73 @@ TEST_CASE("the panel of every technique can be dragged all over without a bad va
         }
         if (!set.all().empty()) CHECK_FALSE(set == makeTechnique(*card)->parameters());
     }
+}
+
+TEST_CASE("a double click on a slider takes a typed value, and refuses what is out of range") {
+    Sample set;
+    Panel panel(set);
+    std::vector<bool> taken(set.all().size());
+    for (float y = 4; y < 500; y += 6) {
+        panel.rest();
+        panel.click(250, y);
+        panel.click(250, y);
+        panel.type("2.5");
+        for (size_t i = 0; i < set.all().size(); ++i) {
+            const Parameter& p = *set.all()[i];
+            CAPTURE(p.spec().id, p.text(), y);
+            if (p.type() != Parameter::Type::Real && p.type() != Parameter::Type::Integer) continue;
+            // The first click of the two moved the slider, but not for long.
+            CHECK((p.value() == 2.5 || !p.changed()));
+            taken[i] = taken[i] || p.value() == 2.5;
+        }
+        set.reset();
+    }
+    const auto wasTaken = [&](const Parameter& p) {
+        const auto all = set.all();
+        return taken[static_cast<size_t>(std::find(all.begin(), all.end(), &p) - all.begin())];
+    };
+    CHECK(wasTaken(set.width));
+    CHECK(wasTaken(set.share));
+    CHECK_FALSE(wasTaken(set.bias));   // 0..1
+    CHECK_FALSE(wasTaken(set.kernel)); // odd
+    CHECK_FALSE(wasTaken(set.unused));
+}
+
+TEST_CASE("one value, a group and all are reset, each by a button of its own") {
+    const auto technique = makeTechnique(findCard("pcf"));
+    ParameterSet& set = technique->parameters();
+    Panel panel(set);
+    const auto change = [&] {
+        for (Parameter* p : set.all())
+            p->set(p->nearest(p->defaultValue() == p->spec().max ? p->spec().min : p->spec().max));
+    };
+    const auto unchanged = [&] {
+        std::vector<const Parameter*> found;
+        for (const Parameter* p : set.all())
+            if (!p->changed()) found.push_back(p);
+        return found;
+    };
+    std::vector<std::vector<const Parameter*>> resets; // what each click brought back
+    const ImGuiStyle& style = ImGui::GetStyle();
+    for (float y = 4; y < 800; y += 5)
+        for (const float x : {width - style.WindowPadding.x - 10, style.WindowPadding.x + 20}) {
+            change();
+            panel.rest();
+            panel.click(x, y);
+            resets.push_back(unchanged());
+        }
+    const auto happened = [&](const std::vector<const Parameter*>& wanted) {
+        return std::find(resets.begin(), resets.end(), wanted) != resets.end();
+    };
+    std::vector<const Parameter*> all;
+    for (const Parameter* p : set.all()) {
+        all.push_back(p);
+        CAPTURE(p->spec().id);
+        CHECK(happened({p}));
+        std::vector<const Parameter*> group;
+        for (const Parameter* other : set.all())
+            if (other->group() == p->group()) group.push_back(other);
+        CHECK(happened(group));
+    }
+    CHECK(happened(all));
 }

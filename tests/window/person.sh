@@ -71,7 +71,8 @@ drag() { # from X Y to X2 Y2, slowly enough for a frame in between
     xdotool mouseup "${5:-1}" sleep 0.5
 }
 sizeOf() { od -An -tu1 -j16 -N8 "$1" | awk '{ print $3 * 256 + $4 "x" $7 * 256 + $8 }'; } # of a PNG
-differ() { ! cmp -s "$1" "$2"; }
+pixels() { tail -c "+$(grep -abo IDAT "$1" | head -n 1 | cut -d: -f1)" "$1"; } # of a PNG, and all behind them
+differ() { ! cmp -s <(pixels "$1") <(pixels "$2"); }
 title() { xdotool getwindowname "$window"; }
 waitTitle() { for _ in $(seq 100); do [[ $(title) == "$1"* ]] && return; sleep 0.1; done; fail "the title is '$(title)', not '$1'"; }
 
