@@ -276,11 +276,11 @@ private:
     float dots_ = 0, pixels_ = 0;
 };
 
-// FOLDER/SCENE-TECHNIQUE-YYYYMMDD-HHMMSS or, of a buffer, FOLDER/SCENE-TECHNIQUE-WHAT-..., and the ending, with a number between where that is taken or promised.
+// FOLDER/SCENE-TECHNIQUE-YYYYMMDD-HHMMSS or, of a buffer, FOLDER/SCENE-TECHNIQUE-WHAT-..., and the ending, with a
+// number between where that is taken or promised.
 class FileNames {
 public:
-    fs::path next(const fs::path& folder, const Session& session, std::string_view ending,
-                  std::string_view what = {}) {
+    fs::path next(const fs::path& folder, const Session& session, std::string_view ending, std::string_view what = {}) {
         const std::time_t now = std::time(nullptr);
         std::tm local{};
         localtime_r(&now, &local);
