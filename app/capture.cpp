@@ -6,6 +6,7 @@
 #include "app/headless.h"
 #include "app/image_file.h"
 #include "renderer/inspect/inspector.h"
+#include "renderer/renderer.h"
 
 #include <fmt/format.h>
 
