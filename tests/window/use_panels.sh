@@ -66,7 +66,7 @@ there "$own/mine.json"
 tr -d ' \n' <"$own/mine.json" | grep -qxF '{"technique":"pcss","parameters":{"search-taps":48}}' ||
     fail "the preset holds $(cat "$own/mine.json")"
 click 1140 $name
-xdotool key ctrl+a sleep 0.6
+xdotool sleep 0.6 keydown ctrl sleep 0.2 key a sleep 0.2 keyup ctrl sleep 0.6
 type "my own"
 click 1015 $buttons # rename
 there "$own/my own.json"
@@ -129,7 +129,7 @@ click 200 113 # another folder
 sleep 0.5
 elsewhere=$folder/elsewhere/deep
 click 600 170
-xdotool key ctrl+a sleep 0.6
+xdotool sleep 0.6 keydown ctrl sleep 0.2 key a sleep 0.2 keyup ctrl sleep 0.6
 type "$elsewhere"
 xdotool key Return
 there "$PENUMBRA_CONFIG_DIR/settings.json"
