@@ -7,11 +7,15 @@
 namespace penumbra {
 namespace {
 
-// For each vertex of the primitive the lowest one at the same place.
+// For each vertex that a triangle of the primitive uses, the lowest one at the same place. Many primitives may share a
+// long list of vertices, of which each uses a few.
 std::vector<uint32_t> welded(const Scene& scene, const Primitive& primitive) {
     const glm::vec3* positions = scene.positions.data() + primitive.firstVertex;
-    std::vector<uint32_t> order(primitive.vertexCount), first(primitive.vertexCount);
-    std::iota(order.begin(), order.end(), 0u);
+    std::vector<uint32_t> order, first(primitive.vertexCount);
+    std::vector<bool> used(primitive.vertexCount);
+    for (uint32_t i = 0; i < primitive.indexCount; ++i) used[scene.indices[primitive.firstIndex + i]] = true;
+    for (uint32_t v = 0; v < primitive.vertexCount; ++v)
+        if (used[v]) order.push_back(v);
     const auto less = [&](uint32_t a, uint32_t b) {
         const glm::vec3 &p = positions[a], &q = positions[b];
         return p.x != q.x ? p.x < q.x : p.y != q.y ? p.y < q.y : p.z != q.z ? p.z < q.z : a < b;

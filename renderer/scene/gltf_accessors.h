@@ -21,8 +21,8 @@ class GltfAccessors {
 public:
     GltfAccessors(GltfFile& file, const tinygltf::Model& model) : file_(file), model_(model) {}
 
-    // Whether the bytes of every bufferView and accessor are there, also of those that nothing uses: a file with a hole
-    // is better refused than half shown. Throws InputError, as all that follows does; `user` says on whose behalf.
+    // Whether the bytes of every accessor are there, as GltfFile::checkBytes. Throws InputError, as all that follows
+    // does; `user` says on whose behalf.
     void checkAll();
     size_t count(int index, const std::string& user) const; // as stated
     // All components of all elements, sparse ones replaced, normalised ones scaled. They are usable numbers.
@@ -44,6 +44,7 @@ private:
 
     GltfFile& file_;
     const tinygltf::Model& model_;
+    size_t zeros_ = 0; // elements read so far that have no bytes
 };
 
 } // namespace penumbra

@@ -79,12 +79,17 @@ DracoMesh::DracoMesh(DracoMesh&&) noexcept = default;
 
 size_t DracoMesh::vertexCount() const { return decoded_->mesh->num_points(); }
 
-std::vector<uint32_t> DracoMesh::indices() const {
+std::vector<uint32_t> DracoMesh::indices(const std::string& place) const {
     const draco::Mesh& mesh = *decoded_->mesh;
     std::vector<uint32_t> indices;
     indices.reserve(size_t(3) * mesh.num_faces());
     for (draco::FaceIndex f(0); f < mesh.num_faces(); ++f)
-        for (const draco::PointIndex& point : mesh.face(f)) indices.push_back(point.value());
+        for (const draco::PointIndex& point : mesh.face(f)) {
+            if (point.value() >= mesh.num_points()) // the decoder of sequential meshes does not look
+                file_->refuse(place,
+                              fmt::format("has an index {} of {} Draco points", point.value(), mesh.num_points()));
+            indices.push_back(point.value());
+        }
     return indices;
 }
 

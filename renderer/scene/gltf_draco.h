@@ -16,7 +16,7 @@ public:
     DracoMesh(DracoMesh&&) noexcept;
 
     size_t vertexCount() const;
-    std::vector<uint32_t> indices() const; // of a triangle list
+    std::vector<uint32_t> indices(const std::string& place) const; // of a triangle list
     // Components of an attribute and its values, `components` a vertex; integers as they are, or scaled where
     // normalised. Throws InputError if there is no such attribute.
     size_t components(uint32_t uniqueId, const std::string& place) const;

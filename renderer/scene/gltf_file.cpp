@@ -12,6 +12,7 @@
 #include <algorithm>
 #include <array>
 #include <cctype>
+#include <cstring>
 #include <fstream>
 #include <limits>
 #include <memory>
@@ -25,7 +26,7 @@ using json = nlohmann::json;
 namespace {
 
 constexpr int largestImage = 16384;             // texels along an edge
-constexpr size_t mostTexelsPerByte = 8192;      // no more fit into a byte of PNG (1 bit each, deflated 1032 times)
+constexpr size_t mostJpegScans = 100;           // each of a few bytes is a walk through all blocks
 constexpr size_t deepestNesting = 200;          // of JSON; readers recurse on it
 constexpr size_t largestFile = size_t{1} << 32; // bytes
 constexpr uint32_t glbMagic = 0x46546C67, jsonChunk = 0x4E4F534A, binChunk = 0x004E4942;
@@ -176,7 +177,8 @@ void GltfFile::readBinary() {
     size_t offset = 12;
     for (int chunk = 0; offset < length; ++chunk) {
         const std::string place = fmt::format("chunk {}", chunk);
-        if (length - offset < 8) refuse(place, "ends early; expected 8 bytes of length and type");
+        if (length - offset < 8)
+            refuse(place, fmt::format("has no room in the {} bytes that the header states", length));
         const size_t size = littleEndian32(bytes, offset);
         const uint32_t type = littleEndian32(bytes, offset + 4);
         offset += 8;
@@ -204,8 +206,9 @@ void GltfFile::parse(std::string_view text) {
         const size_t at = std::min(error.byte, text.size());
         const auto line = 1 + std::count(text.begin(), text.begin() + std::ptrdiff_t(at), '\n');
         refuse(fmt::format("line {}", line), "is not valid JSON");
-    } catch (const json::exception& error) { // a number out of range
-        refuse("JSON", error.what());
+    } catch (const json::exception& error) { // a number out of range: "[json.exception...] number overflow parsing '…'"
+        const std::string_view reason = error.what();
+        refuse("JSON", std::string(reason.substr(reason.find("] ") + 2)));
     }
 }
 
@@ -262,6 +265,16 @@ size_t GltfFile::unsignedMember(const json& object, const char* name, size_t oth
     if (value < 0 || value > 9e15 || value != double(uint64_t(value)))
         refuse(place, fmt::format("{} is {}; expected a whole number of at least 0", name, found->dump()));
     return size_t(value);
+}
+
+void GltfFile::checkBytes() {
+    // What others may read instead of compressed bytes need not be there.
+    const auto isFallback = [](const json& description) {
+        return findExtension(description, "EXT_meshopt_compression") != nullptr;
+    };
+    for (size_t i = 0; i < buffers_.size(); ++i)
+        if (!isFallback(json_["buffers"][i])) buffer(i, "file");
+    for (size_t i = 0; i < decodedViews_.size(); ++i) bufferView(i, "file");
 }
 
 std::span<const uint8_t> GltfFile::buffer(size_t index, const std::string& user) {
@@ -336,7 +349,9 @@ std::vector<uint8_t> GltfFile::decodeMeshopt(const json& compressed, size_t byte
     if (count == 0 || count > most || count * stride != byteLength)
         refuse(place, fmt::format("states {} bytes, {} elements of {} bytes, which {} compressed bytes cannot hold",
                                   byteLength, count, stride, bytes.size()));
-    std::vector<uint8_t> decoded(count * stride);
+    decodedBytes_ += byteLength;
+    if (decodedBytes_ > largestFile) refuse(place, "brings the decompressed bytes to more than 4 GiB");
+    std::vector<uint8_t> decoded(byteLength);
     const int failed =
         attributes  ? meshopt_decodeVertexBuffer(decoded.data(), count, stride, bytes.data(), bytes.size())
         : triangles ? meshopt_decodeIndexBuffer(decoded.data(), count, stride, bytes.data(), bytes.size())
@@ -362,8 +377,12 @@ namespace {
 
 bool startsWith(std::span<const uint8_t> bytes, size_t offset, std::string_view text) {
     return bytes.size() >= offset + text.size() &&
-           std::equal(text.begin(), text.end(), bytes.begin() + std::ptrdiff_t(offset));
+           std::memcmp(text.data(), bytes.data() + offset, text.size()) == 0; // text is signed, bytes are not
 }
+
+bool isPng(std::span<const uint8_t> bytes) { return startsWith(bytes, 0, "\x89PNG\r\n\x1a\n"); }
+
+bool isJpeg(std::span<const uint8_t> bytes) { return startsWith(bytes, 0, "\xFF\xD8\xFF"); }
 
 bool isWebp(std::span<const uint8_t> bytes) { return startsWith(bytes, 0, "RIFF") && startsWith(bytes, 8, "WEBP"); }
 
@@ -372,8 +391,26 @@ bool isUnreadFormat(std::span<const uint8_t> bytes) {
     return startsWith(bytes, 0, "\xABKTX 20\xBB") || startsWith(bytes, 4, "ftypavif") || startsWith(bytes, 0, "DDS ");
 }
 
+size_t jpegScans(std::span<const uint8_t> bytes) {
+    constexpr uint8_t startOfScan[] = {0xFF, 0xDA};
+    size_t count = 0;
+    for (auto at = bytes.begin();; ++at, ++count) {
+        at = std::search(at, bytes.end(), std::begin(startOfScan), std::end(startOfScan));
+        if (at == bytes.end()) return count;
+    }
+}
+
+// No more than these fit into so many bytes.
+size_t mostTexels(std::span<const uint8_t> bytes) {
+    if (isJpeg(bytes)) return 512 * bytes.size();                              // a bit for the mean of a block of 64
+    const size_t deflated = 8 * 1032 * bytes.size();                           // PNG: of a bit each
+    return isWebp(bytes) ? std::max(deflated, size_t{4096} * 4096) : deflated; // one colour needs next to nothing
+}
+
+// stb_image knows more formats than glTF and is careless in some: it sees only those two.
 bool pictureSize(std::span<const uint8_t> bytes, int& width, int& height) {
     if (isWebp(bytes)) return WebPGetInfo(bytes.data(), bytes.size(), &width, &height) != 0;
+    if (!isPng(bytes) && !isJpeg(bytes)) return false;
     int channels = 0;
     return stbi_info_from_memory(bytes.data(), int(bytes.size()), &width, &height, &channels) != 0;
 }
@@ -418,9 +455,11 @@ std::optional<TextureImage> GltfFile::image(size_t index) {
     if (result.width < 1 || result.height < 1 || result.width > largestImage || result.height > largestImage)
         refuse(place, fmt::format("has {}x{} texels; expected at most {}x{}", result.width, result.height, largestImage,
                                   largestImage));
-    if (size_t(result.width) * size_t(result.height) / mostTexelsPerByte > bytes.size())
+    if (size_t(result.width) * size_t(result.height) > mostTexels(bytes))
         refuse(place, fmt::format("states {}x{} texels, which {} bytes cannot hold", result.width, result.height,
                                   bytes.size()));
+    if (isJpeg(bytes) && jpegScans(bytes) > mostJpegScans)
+        refuse(place, fmt::format("has more than {} scans; expected a JPEG of fewer", mostJpegScans));
     if (!decodePicture(bytes, result.width, result.height, result.rgba)) refuse(place, undecodable);
     if (const json name = description.value("name", json()); name.is_string()) result.name = name.get<std::string>();
     return result;

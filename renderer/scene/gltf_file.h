@@ -30,13 +30,19 @@ public:
     // CRC-32 of the file's bytes followed by those of the files that it named, in the order in which they were read.
     uint32_t checksum() const { return checksum_; }
 
+    // Whether the bytes of every buffer and buffer view are there, also of those that nothing uses: a file with a hole
+    // is better refused than half shown. Throws InputError, as all that follows does.
+    void checkBytes();
     // The bytes of a buffer or buffer view, decompressed where EXT_meshopt_compression is used. Checked against the
-    // real bytes. Throws InputError; `user` says on whose behalf ("accessor 3").
+    // real bytes; `user` says on whose behalf ("accessor 3").
     std::span<const uint8_t> buffer(size_t index, const std::string& user);
     std::span<const uint8_t> bufferView(size_t index, const std::string& user);
-    // A decoded PNG, JPEG or WebP; nothing if it is in one of the formats that are known but not read. Throws
-    // InputError.
+    // A decoded PNG, JPEG or WebP; nothing if it is in one of the formats that are known but not read.
     std::optional<TextureImage> image(size_t index);
+
+    // A member of an object that counts or refers to something.
+    size_t unsignedMember(const nlohmann::json& object, const char* name, size_t otherwise,
+                          const std::string& place) const;
 
     [[noreturn]] void refuse(const std::string& place, const std::string& expectation) const;
 
@@ -45,8 +51,6 @@ private:
     void parse(std::string_view text);
     void checkRoot(std::span<const std::string_view> knownExtensions) const;
     const nlohmann::json& element(const char* collection, size_t index, const std::string& user) const;
-    size_t unsignedMember(const nlohmann::json& object, const char* name, size_t otherwise,
-                          const std::string& place) const;
     std::span<const uint8_t> bytesOfView(const nlohmann::json& description, const std::string& place);
     std::vector<uint8_t> decodeMeshopt(const nlohmann::json& compressed, size_t byteLength, const std::string& place);
     std::vector<uint8_t> resolve(const std::string& uri, const std::string& place);
@@ -65,6 +69,7 @@ private:
     std::span<const uint8_t> binaryChunk_;
     bool hasBinaryChunk_ = false;
     std::vector<Bytes> buffers_, decodedViews_;
+    size_t decodedBytes_ = 0;
 };
 
 // The object of an extension in an object's "extensions", or null.

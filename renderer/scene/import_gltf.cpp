@@ -44,7 +44,8 @@ constexpr std::string_view harmlessExtensions[] = {"KHR_materials_anisotropy",  
 constexpr size_t mostVertices = size_t{1} << 26, mostIndices = size_t{1} << 28, mostKeys = size_t{1} << 26;
 constexpr size_t mostTextureBytes = size_t{1} << 32, mostNotes = 100, mostNodes = size_t{1} << 22;
 constexpr size_t mostTargets = 4096, mostJoints = 65536;
-constexpr size_t mostInfluenceSets = 2; // of four joints each
+constexpr uint64_t mostDrawables = uint64_t{1} << 22, mostCorners = uint64_t{1} << 30; // over all nodes
+constexpr size_t mostInfluenceSets = 2;                                                // of four joints each
 
 bool contains(std::span<const std::string_view> list, std::string_view name) {
     return std::find(list.begin(), list.end(), name) != list.end();
@@ -85,6 +86,7 @@ public:
     Scene run() {
         scene_.name = file_.path().stem().string();
         scene_.file = file_.path();
+        file_.checkBytes();
         parseModel();
         accessors_.checkAll();
         noteExtensions();
@@ -104,7 +106,9 @@ public:
         for (size_t i = 0; i < model_.skins.size(); ++i) addSkin(i);
         for (size_t i = 0; i < model_.nodes.size(); ++i) checkSkin(i);
         for (size_t i = 0; i < model_.animations.size(); ++i) addAnimation(i);
-        checkExtent();
+        checkAmount();
+        checkReach();
+        if (scene_.triangleCount() == 0) note("there is nothing in it to draw");
         scene_.checksum = file_.checksum();
         return std::move(scene_);
     }
@@ -135,12 +139,9 @@ private:
 
     const json& element(const char* collection, size_t index) const { return file_.document()[collection][index]; }
     int integerMember(const json& object, const char* name, int otherwise, const std::string& place) const {
-        const auto found = object.find(name);
-        if (found == object.end()) return otherwise;
-        const double value = found->is_number() ? found->get<double>() : -1;
-        if (!(value >= 0 && value < 1e9) || value != std::floor(value))
-            file_.refuse(place, fmt::format("{} is {}; expected a whole number", name, found->dump()));
-        return int(value);
+        if (!object.contains(name)) return otherwise;
+        constexpr size_t largest = std::numeric_limits<int>::max();
+        return int(std::min(file_.unsignedMember(object, name, 0, place), largest));
     }
     // `into` keeps what it has where there is no such member.
     template <int N>
@@ -156,32 +157,25 @@ private:
         if (!usableNumber(number)) file_.refuse(place, fmt::format("{} is {}; expected a number", name, value.dump()));
         return number;
     }
+    // "node 3 'wheel'": what messages call an element.
+    static std::string placeOf(const char* what, size_t index, const std::string& name) {
+        return name.empty() ? fmt::format("{} {}", what, index) : fmt::format("{} {} '{}'", what, index, name);
+    }
     std::string nameOr(const json& object, const std::string& otherwise) const {
         const auto found = object.find("name");
         return found != object.end() && found->is_string() ? oneLine(found->get<std::string>()) : otherwise;
     }
 
     // Buffers and images are left out of what tinygltf sees: their bytes are read and checked by GltfFile. So are the
-    // indices of Draco's primitives, for which it would want a bufferView.
+    // indices of primitives, for which it wants a bufferView that Draco's need not have.
     void parseModel() {
-        json document, empty = json::array();
+        json document, none = json::array();
         for (const auto& [key, value] : file_.document().items())
             if (key != "buffers" && key != "images") document[key] = value;
-        for (json& mesh : document.contains("meshes") ? document["meshes"] : empty)
-            for (json& primitive : mesh.contains("primitives") ? mesh["primitives"] : empty)
-                if (primitive.is_object() && findExtension(primitive, "KHR_draco_mesh_compression"))
-                    primitive.erase("indices");
-        const std::string text = document.dump();
-        std::string error, warning;
-        bool read = false;
-        try {
-            tinygltf::TinyGLTF loader;
-            read = text.size() <= std::numeric_limits<unsigned>::max() &&
-                   loader.LoadASCIIFromString(&model_, &error, &warning, text.data(), unsigned(text.size()), "");
-        } catch (const std::exception& exception) {
-            error = exception.what();
-        }
-        if (!read) file_.refuse("JSON", error.empty() ? "expected glTF 2.0" : error);
+        for (json& mesh : document.contains("meshes") ? document["meshes"] : none)
+            for (json& primitive : mesh.contains("primitives") ? mesh["primitives"] : none)
+                if (primitive.is_object()) primitive.erase("indices");
+        if (const std::string error = parsed(document, model_); !error.empty()) refuseElement(document, error);
         // A mistyped element may have been left out, which would shift what the others refer to.
         const auto complete = [&](const char* name, size_t count) {
             const auto found = document.find(name);
@@ -198,6 +192,34 @@ private:
         complete("scenes", model_.scenes.size());
         complete("skins", model_.skins.size());
         complete("textures", model_.textures.size());
+    }
+
+    // The reason if tinygltf cannot read it.
+    static std::string parsed(const json& document, tinygltf::Model& model) {
+        const std::string text = document.dump();
+        std::string error, warning;
+        bool read = false;
+        try {
+            tinygltf::TinyGLTF loader;
+            read = text.size() <= std::numeric_limits<unsigned>::max() &&
+                   loader.LoadASCIIFromString(&model, &error, &warning, text.data(), unsigned(text.size()), "");
+        } catch (const std::exception& exception) {
+            error = exception.what();
+        }
+        return read ? std::string() : error.empty() ? "expected glTF 2.0" : error;
+    }
+
+    // tinygltf says what is wrong but seldom where: the place is the first element that it does not take alone.
+    [[noreturn]] void refuseElement(const json& document, const std::string& reason) const {
+        for (const auto& [collection, elements] : document.items())
+            if (elements.is_array())
+                for (size_t i = 0; i < elements.size(); ++i) {
+                    tinygltf::Model alone;
+                    const json one{{"asset", {{"version", "2.0"}}}, {collection, json::array({elements[i]})}};
+                    if (const std::string error = parsed(one, alone); !error.empty())
+                        file_.refuse(fmt::format("{}[{}]", collection, i), error);
+                }
+        file_.refuse("JSON", reason);
     }
 
     void noteExtensions() {
@@ -220,8 +242,10 @@ private:
     void chooseScene() {
         for (size_t i = 0; i < model_.scenes.size(); ++i)
             scene_.sceneNames.push_back(nameOr(element("scenes", i), fmt::format("scene {}", i)));
-        scene_.chosenScene = std::max(model_.defaultScene, 0);
-        if (!choice_.scene.empty()) scene_.chosenScene = chosenOf(scene_.sceneNames, choice_.scene, "scene");
+        if (!choice_.scene.empty())
+            scene_.chosenScene = chosenOf(scene_.sceneNames, choice_.scene, "scene");
+        else if (model_.defaultScene >= 0)
+            at(model_.scenes, scene_.chosenScene = model_.defaultScene, "scene", "scene");
     }
 
     // KHR_materials_variants.
@@ -241,7 +265,7 @@ private:
 
     void addMaterial(size_t index) {
         const tinygltf::Material& from = model_.materials[index];
-        const std::string place = fmt::format("material {} '{}'", index, from.name);
+        const std::string place = placeOf("material", index, from.name);
         const tinygltf::PbrMetallicRoughness& pbr = from.pbrMetallicRoughness;
         Material to;
         to.name = from.name;
@@ -262,7 +286,7 @@ private:
             if (!usableNumber(to.alphaCutoff)) file_.refuse(place, "alphaCutoff is not a number");
         } else if (from.alphaMode == "BLEND") {
             to.masked = true;
-            note(fmt::format("material '{}' is blended; it is drawn cut out at half of its alpha", from.name));
+            note(place + " is blended; it is drawn cut out at half of its alpha");
         } else if (from.alphaMode != "OPAQUE") {
             file_.refuse(place, fmt::format("alphaMode is '{}'; expected OPAQUE, MASK or BLEND", from.alphaMode));
         }
@@ -317,16 +341,20 @@ private:
         if (source < 0) return neutral();
         const auto known = textures_.find({source, texture.sampler});
         if (known != textures_.end()) return known->second;
-        std::optional<TextureImage> image = file_.image(size_t(source));
+        const auto sibling = textures_.lower_bound({source, -1}); // the same picture with another sampler
+        std::optional<TextureImage> image;
+        if (sibling == textures_.end() || sibling->first.first != source)
+            image = file_.image(size_t(source));
+        else if (sibling->second >= 0)
+            image = scene_.textures[size_t(sibling->second)];
         if (!image) return textures_[{source, texture.sampler}] = neutral();
         textureBytes_ += image->rgba.size();
         if (textureBytes_ > mostTextureBytes) file_.refuse(user, "brings the pictures to more than 4 GiB");
-        if (texture.sampler >= 0) {
-            const tinygltf::Sampler& sampler = at(model_.samplers, texture.sampler, "sampler", user);
-            image->wrapU = wrapOf(sampler.wrapS);
-            image->wrapV = wrapOf(sampler.wrapT);
-            image->magnifyNearest = sampler.magFilter == TINYGLTF_TEXTURE_FILTER_NEAREST;
-        }
+        const tinygltf::Sampler sampler =
+            texture.sampler >= 0 ? at(model_.samplers, texture.sampler, "sampler", user) : tinygltf::Sampler();
+        image->wrapU = wrapOf(sampler.wrapS);
+        image->wrapV = wrapOf(sampler.wrapT);
+        image->magnifyNearest = sampler.magFilter == TINYGLTF_TEXTURE_FILTER_NEAREST;
         scene_.textures.push_back(std::move(*image));
         return textures_[{source, texture.sampler}] = int(scene_.textures.size()) - 1;
     }
@@ -353,15 +381,15 @@ private:
     void addMesh(size_t index) {
         const tinygltf::Mesh& from = model_.meshes[index];
         Mesh& to = scene_.meshes.emplace_back();
+        const std::string place = placeOf("mesh", index, from.name);
         to.name = from.name;
         for (size_t i = 0; i < from.primitives.size(); ++i)
             addPrimitive(Source{from.primitives[i], element("meshes", index)["primitives"][i],
-                                fmt::format("mesh {} '{}' primitive {}", index, from.name, i)},
+                                fmt::format("{} primitive {}", place, i)},
                          to);
         for (const Primitive& primitive : to.primitives)
             if (primitive.morphTargets != to.primitives[0].morphTargets)
-                file_.refuse(fmt::format("mesh {} '{}'", index, from.name),
-                             "has primitives with different numbers of morph targets");
+                file_.refuse(place, "has primitives with different numbers of morph targets");
     }
 
     void addPrimitive(Source from, Mesh& mesh) {
@@ -380,9 +408,9 @@ private:
         const VertexRange range = addVertices(from);
         std::vector<uint32_t> indices;
         if (from.draco) {
-            indices = from.draco->indices();
-        } else if (from.primitive.indices >= 0) {
-            indices = accessors_.indices(from.primitive.indices, range.count, place);
+            indices = from.draco->indices(place);
+        } else if (const int accessor = integerMember(from.description, "indices", -1, place); accessor >= 0) {
+            indices = accessors_.indices(accessor, range.count, place);
         } else {
             indices.resize(range.count);
             std::iota(indices.begin(), indices.end(), 0u);
@@ -642,7 +670,7 @@ private:
 
     // --- nodes -------------------------------------------------------------------------------------------------------
 
-    std::string nodePlace(size_t index) const { return fmt::format("node {} '{}'", index, model_.nodes[index].name); }
+    std::string nodePlace(size_t index) const { return placeOf("node", index, model_.nodes[index].name); }
 
     void addNodes() {
         const size_t count = model_.nodes.size();
@@ -732,7 +760,7 @@ private:
         while (!open.empty()) {
             const int node = open.back();
             open.pop_back();
-            at(model_.nodes, node, "node", fmt::format("scene '{}'", chosen.name));
+            at(model_.nodes, node, "node", placeOf("scene", size_t(scene_.chosenScene), chosen.name));
             if (visible[size_t(node)]) continue;
             visible[size_t(node)] = true;
             const std::vector<int>& children = model_.nodes[size_t(node)].children;
@@ -757,6 +785,10 @@ private:
         Node to;
         to.name = from.name;
         if (!from.matrix.empty()) {
+            const json& description = element("nodes", index); // tinygltf leaves out the rest
+            if (description.contains("translation") || description.contains("rotation") ||
+                description.contains("scale"))
+                note(place + ": has a matrix besides translation, rotation or scale; the matrix is taken");
             const std::array<float, 16> values = numbers(from.matrix, 16, "matrix");
             to.matrix = glm::make_mat4(values.data());
             if (glm::row(*to.matrix, 3) != glm::vec4(0, 0, 0, 1))
@@ -798,7 +830,7 @@ private:
 
     void addSkin(size_t index) {
         const tinygltf::Skin& from = model_.skins[index];
-        const std::string place = fmt::format("skin {} '{}'", index, from.name);
+        const std::string place = placeOf("skin", index, from.name);
         Skin to;
         to.name = from.name;
         to.firstMatrix =
@@ -857,7 +889,7 @@ private:
             to.halfHeight = float(std::abs(from.orthographic.ymag));
             if (!(to.halfHeight > 0 && usableNumber(to.halfHeight)))
                 file_.refuse(place, fmt::format("camera has a ymag of {}; expected metres", from.orthographic.ymag));
-            note(fmt::format("camera '{}' is orthographic; a perspective one frames the same", to.name));
+            note(place + ": its orthographic camera becomes a perspective one that frames the same");
         } else {
             file_.refuse(place, fmt::format("camera has type '{}'; expected perspective or orthographic", from.type));
         }
@@ -905,7 +937,8 @@ private:
         Animation to;
         to.name = from.name.empty() ? fmt::format("animation {}", index) : oneLine(from.name);
         for (size_t i = 0; i < from.channels.size(); ++i)
-            addChannel(from, from.channels[i], to, fmt::format("animation {} '{}' channel {}", index, from.name, i));
+            addChannel(from, from.channels[i], to,
+                       fmt::format("{} channel {}", placeOf("animation", index, from.name), i));
         std::stable_sort(to.channels.begin(), to.channels.end(),
                          [](const auto& a, const auto& b) { return a.node < b.node; });
         for (const AnimationChannel& channel : to.channels) to.duration = std::max(to.duration, channel.times.back());
@@ -968,19 +1001,100 @@ private:
         if (!to.times.empty()) into.channels.push_back(std::move(to));
     }
 
-    // Every number was fine, but their products may not be.
-    void checkExtent() const {
-        Pose pose;
-        evaluatePose(scene_, scene_.animations.size(), 0, pose);
-        for (size_t i = 0; i < pose.worldFromNode.size(); ++i) {
-            const float* values = glm::value_ptr(pose.worldFromNode[i]);
-            if (!std::all_of(values, values + 16, usableNumber))
-                file_.refuse(fmt::format("node '{}'", scene_.nodes[i].name), "lies or stretches beyond all measure");
+    // Many nodes may each draw a mesh of many primitives, or of many that share a long list of vertices.
+    void checkAmount() const {
+        uint64_t drawables = 0, corners = 0;
+        for (const Node& node : scene_.nodes) {
+            if (node.mesh < 0 || !node.visible) continue;
+            const Mesh& mesh = scene_.meshes[size_t(node.mesh)];
+            drawables += mesh.primitives.size();
+            if (drawables > mostDrawables)
+                file_.refuse("nodes", fmt::format("draw more than {} primitives", mostDrawables));
+            for (const Primitive& primitive : mesh.primitives) corners += primitive.vertexCount + primitive.indexCount;
+            if (corners > mostCorners)
+                file_.refuse("nodes", fmt::format("draw more than {} vertices and indices", mostCorners));
         }
-        const Bounds bounds = worldBounds(scene_, pose);
-        for (int axis = 0; !bounds.empty() && axis < 3; ++axis)
-            if (!usableNumber(bounds.min[axis]) || !usableNumber(bounds.max[axis]))
-                file_.refuse("scene", fmt::format("reaches farther than {} m", largestNumber));
+    }
+
+    // Every number was fine, but their products may not be. So that no moment of any clip leaves the range of float, it
+    // is followed from the roots on how far off and how much stretched each node could at most be.
+    void checkReach() const {
+        struct Most {
+            double stretch = 0, distance = 0; // of vectors; of the origin [m]
+            Most operator*(const Most& child) const {
+                return {stretch * child.stretch, distance + stretch * child.distance};
+            }
+        };
+        const auto ofMatrix = [](const glm::mat4& m) {
+            const glm::dvec3 lengths(glm::length(m[0]), glm::length(m[1]), glm::length(m[2]));
+            return Most{glm::length(lengths), glm::length(glm::dvec3(m[3]))};
+        };
+        const auto radius = [](const Bounds& box) {
+            return box.empty() ? 0.0 : glm::length(glm::dvec3(glm::max(glm::abs(box.min), glm::abs(box.max))));
+        };
+
+        std::vector<Most> most;
+        for (const Node& node : scene_.nodes) {
+            const glm::vec3 scale = glm::abs(node.scale);
+            most.push_back(node.matrix ? ofMatrix(*node.matrix)
+                                       : Most{std::max({scale.x, scale.y, scale.z}), glm::length(node.translation)});
+        }
+        std::vector<double> weights(scene_.restWeights.begin(), scene_.restWeights.end());
+        for (double& weight : weights) weight = std::abs(weight);
+        for (const Animation& animation : scene_.animations)
+            for (const AnimationChannel& channel : animation.channels) {
+                const double largest = largestOf(channel);
+                double& stretch = most[size_t(channel.node)].stretch;
+                double& distance = most[size_t(channel.node)].distance;
+                if (channel.path == AnimationChannel::Path::Scale) stretch = std::max(stretch, largest);
+                if (channel.path == AnimationChannel::Path::Translation)
+                    distance = std::max(distance, std::sqrt(3.0) * largest);
+                for (uint32_t t = 0; channel.path == AnimationChannel::Path::Weights && t < channel.width; ++t) {
+                    double& weight = weights[scene_.nodes[size_t(channel.node)].firstWeight + t];
+                    weight = std::max(weight, largest);
+                }
+            }
+
+        for (size_t i = 0; i < scene_.nodes.size(); ++i) {
+            const Node& node = scene_.nodes[i];
+            if (node.parent >= 0) most[i] = most[size_t(node.parent)] * most[i];
+            if (!(std::max(most[i].stretch, most[i].distance) <= largestNumber)) refuseReach(i);
+        }
+        for (size_t i = 0; i < scene_.nodes.size(); ++i) {
+            const Node& node = scene_.nodes[i];
+            if (node.mesh < 0) continue;
+            for (const Primitive& primitive : scene_.meshes[size_t(node.mesh)].primitives) {
+                double morphed = 0;
+                for (uint32_t t = 0; t < primitive.morphTargets; ++t)
+                    morphed += weights[node.firstWeight + t] * radius(primitive.morphBounds[t]);
+                const auto check = [&](const Most& placed, const Bounds& box) {
+                    if (!((placed * Most{1, radius(box) + morphed}).distance <= largestNumber)) refuseReach(i);
+                };
+                check(most[i], primitive.bounds);
+                if (node.skin < 0) continue;
+                const Skin& skin = scene_.skins[size_t(node.skin)];
+                for (const auto& [joint, box] : primitive.jointBounds)
+                    check(most[size_t(skin.joints[joint])] * ofMatrix(skin.jointFromMesh[joint]), box);
+            }
+        }
+    }
+
+    [[noreturn]] void refuseReach(size_t node) const {
+        auto found = std::find(nodes_.begin(), nodes_.end(), int(node));
+        if (found == nodes_.end())
+            found = std::find(nodes_.begin(), nodes_.end(), scene_.nodes[node].parent); // instance
+        file_.refuse(nodePlace(size_t(found - nodes_.begin())),
+                     fmt::format("may lie or stretch beyond all measure; expected at most {} m", largestNumber));
+    }
+
+    // Of all that a channel's values could at most become. The tangents of a cubic spline are times the interval.
+    static double largestOf(const AnimationChannel& channel) {
+        double largest = 0, longest = 0;
+        for (const float value : channel.values) largest = std::max(largest, std::abs(double(value)));
+        for (size_t i = 1; i < channel.times.size(); ++i)
+            longest = std::max(longest, double(channel.times[i]) - channel.times[i - 1]);
+        return channel.interpolation == AnimationChannel::Interpolation::CubicSpline ? largest * (1 + longest)
+                                                                                     : largest;
     }
 
     GltfFile file_;
