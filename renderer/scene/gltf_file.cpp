@@ -268,12 +268,12 @@ size_t GltfFile::unsignedMember(const json& object, const char* name, size_t oth
 }
 
 void GltfFile::checkBytes() {
-    // What others may read instead of compressed bytes need not be there.
-    const auto isFallback = [](const json& description) {
-        return findExtension(description, "EXT_meshopt_compression") != nullptr;
-    };
-    for (size_t i = 0; i < buffers_.size(); ++i)
-        if (!isFallback(json_["buffers"][i])) buffer(i, "file");
+    for (size_t i = 0; i < buffers_.size(); ++i) {
+        // Without bytes of its own, or for readers that cannot decompress: such a buffer is for nobody here to read.
+        const json& description = json_["buffers"][i];
+        const bool hasBytes = description.contains("uri") || (i == 0 && hasBinaryChunk_);
+        if (hasBytes && !findExtension(description, "EXT_meshopt_compression")) buffer(i, "file");
+    }
     for (size_t i = 0; i < decodedViews_.size(); ++i) bufferView(i, "file");
 }
 
@@ -391,6 +391,18 @@ bool isUnreadFormat(std::span<const uint8_t> bytes) {
     return startsWith(bytes, 0, "\xABKTX 20\xBB") || startsWith(bytes, 4, "ftypavif") || startsWith(bytes, 0, "DDS ");
 }
 
+// stb_image allocates what a chunk claims to hold before it looks whether that is there.
+bool pngChunksFit(std::span<const uint8_t> bytes) {
+    for (size_t at = 8; bytes.size() - at >= 12;) { // length, type, data, checksum
+        if (startsWith(bytes, at + 4, "IEND")) return true;
+        const size_t length =
+            size_t{bytes[at]} << 24 | size_t{bytes[at + 1]} << 16 | size_t{bytes[at + 2]} << 8 | size_t{bytes[at + 3]};
+        if (length > bytes.size() - at - 12) return false;
+        at += 12 + length;
+    }
+    return false;
+}
+
 size_t jpegScans(std::span<const uint8_t> bytes) {
     constexpr uint8_t startOfScan[] = {0xFF, 0xDA};
     size_t count = 0;
@@ -410,7 +422,7 @@ size_t mostTexels(std::span<const uint8_t> bytes) {
 // stb_image knows more formats than glTF and is careless in some: it sees only those two.
 bool pictureSize(std::span<const uint8_t> bytes, int& width, int& height) {
     if (isWebp(bytes)) return WebPGetInfo(bytes.data(), bytes.size(), &width, &height) != 0;
-    if (!isPng(bytes) && !isJpeg(bytes)) return false;
+    if (!isJpeg(bytes) && !(isPng(bytes) && pngChunksFit(bytes))) return false;
     int channels = 0;
     return stbi_info_from_memory(bytes.data(), int(bytes.size()), &width, &height, &channels) != 0;
 }
