@@ -17,6 +17,7 @@
 #include <imgui.h>
 
 #include <algorithm>
+#include <array>
 #include <chrono>
 #include <cmath>
 #include <ctime>
@@ -27,9 +28,10 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr float fontHeight = 15;    // pixels at 96 dots per inch
-constexpr double idleSeconds = 0.1; // how long a window with nothing to show waits for input
-constexpr int settlingFrames = 4;   // that ImGui needs to answer an input
+constexpr float fontHeight = 15;     // pixels at 96 dots per inch
+constexpr int settlingFrames = 4;    // that ImGui needs to answer an input
+constexpr double tapSeconds = 0.05;  // how long a key counts as held at least
+constexpr double longestHold = 0.25; // in one frame [s]; after a pause of the program nothing leaps
 
 std::string& lastGlfwError() {
     static std::string text;
@@ -58,6 +60,8 @@ glm::ivec2 largestWindow() {
 // What the callbacks hear; taken once a frame.
 struct Heard {
     Keys struck;
+    int textSteps = 0; // to larger text, or smaller
+    bool textReset = false;
     std::vector<std::string> dropped;
     std::vector<int> pressed;                        // keys that went down
     std::vector<std::pair<int, int>> releasedAtOnce; // keys and modifiers that went down and up
@@ -81,7 +85,7 @@ public:
         if (fitting != scaled) glfwSetWindowSize(window_, fitting.x, fitting.y);
         glfwMakeContextCurrent(window_);
         glfwSwapInterval(1);
-        glfwSetWindowUserPointer(window_, &heard_);
+        glfwSetWindowUserPointer(window_, this);
         glfwSetDropCallback(window_, onDrop);
     }
     ~Window() { glfwDestroyWindow(window_); }
@@ -95,7 +99,8 @@ public:
 
     bool visible() const {
         const glm::ivec2 pixels = framebufferSize();
-        return !glfwGetWindowAttrib(window_, GLFW_ICONIFIED) && pixels.x > 0 && pixels.y > 0;
+        return glfwGetWindowAttrib(window_, GLFW_VISIBLE) && !glfwGetWindowAttrib(window_, GLFW_ICONIFIED) &&
+               pixels.x > 0 && pixels.y > 0;
     }
     glm::ivec2 framebufferSize() const {
         glm::ivec2 size(0);
@@ -115,17 +120,27 @@ public:
         return std::isfinite(x) ? std::clamp(x, 0.5f, 8.0f) : 1.0f;
     }
     bool down(int key) const { return glfwGetKey(window_, key) == GLFW_PRESS; }
+    // How long the key was down since this was last asked [s].
+    float secondsDown(int key);
 
 private:
-    static Heard& heard(GLFWwindow* window) { return *static_cast<Heard*>(glfwGetWindowUserPointer(window)); }
+    static Heard& heard(GLFWwindow* window) { return of(window).heard_; }
     static void onKey(GLFWwindow* window, int key, int code, int action, int modifiers);
     static void onStroke(GLFWwindow* window, int key, int modifiers);
     static void onDrop(GLFWwindow* window, int count, const char** paths) {
         for (int i = 0; i < count; ++i) heard(window).dropped.push_back(paths[i]);
     }
 
+    // Of a key: whether and since when it is down, and how long it was before [s].
+    struct Hold {
+        bool down = false;
+        double since = 0, seconds = 0;
+    };
+    static Window& of(GLFWwindow* window) { return *static_cast<Window*>(glfwGetWindowUserPointer(window)); }
+
     GLFWwindow* window_ = nullptr;
     Heard heard_;
+    std::array<Hold, GLFW_KEY_LAST + 1> holds_{};
 };
 
 // A context that shares the window's objects, for another thread to fill them.
@@ -144,18 +159,45 @@ private:
     GLFWwindow* window_ = nullptr;
 };
 
+// GLFW names keys after their place on an American keyboard: where a letter is printed elsewhere, that is the one
+// meant.
+int keyOfLetter(int key, int code) {
+    const char* printed = glfwGetKeyName(key, code);
+    if (!printed || printed[0] == 0 || printed[1] != 0) return key;
+    const char letter = printed[0];
+    if (letter >= 'a' && letter <= 'z') return GLFW_KEY_A + (letter - 'a');
+    return letter == '+' ? GLFW_KEY_EQUAL : letter == '-' ? GLFW_KEY_MINUS : key;
+}
+
 // ImGui 1.86 looks at which keys are down once a frame: a key that went down and up within a slow frame would be lost,
 // so that its release is told a frame later.
 void Window::onKey(GLFWwindow* window, int key, int code, int action, int modifiers) {
     std::vector<int>& pressed = heard(window).pressed;
+    if (key >= 0 && action != GLFW_REPEAT) {
+        const int meant = keyOfLetter(key, code);
+        // Flight keys are those of that place, whatever is printed on them.
+        const bool sign = meant == GLFW_KEY_EQUAL || meant == GLFW_KEY_MINUS;
+        Hold& hold = of(window).holds_[static_cast<size_t>(sign ? meant : key)];
+        hold.seconds += action == GLFW_PRESS ? tapSeconds : glfwGetTime() - hold.since;
+        hold.since = glfwGetTime();
+        hold.down = action == GLFW_PRESS;
+    }
     if (action == GLFW_PRESS) {
         pressed.push_back(key);
-        onStroke(window, key, modifiers);
+        onStroke(window, keyOfLetter(key, code), modifiers);
     }
     if (action == GLFW_RELEASE && std::find(pressed.begin(), pressed.end(), key) != pressed.end())
         heard(window).releasedAtOnce.push_back({key, modifiers});
     else
         ImGui_ImplGlfw_KeyCallback(window, key, code, action, modifiers);
+}
+
+float Window::secondsDown(int key) {
+    Hold& hold = holds_[static_cast<size_t>(key)];
+    const double now = glfwGetTime();
+    const double seconds = hold.seconds + (hold.down ? now - hold.since : 0);
+    hold = {hold.down, now, 0};
+    return static_cast<float>(std::min(seconds, longestHold));
 }
 
 void Window::onStroke(GLFWwindow* window, int key, int modifiers) {
@@ -166,11 +208,17 @@ void Window::onStroke(GLFWwindow* window, int key, int modifiers) {
     if (key == GLFW_KEY_F1) struck.help = true;
     if (control && key == GLFW_KEY_Q) glfwSetWindowShouldClose(window, GLFW_TRUE);
     if (control && key == GLFW_KEY_O) struck.open = true;
+    if (control && (key == GLFW_KEY_EQUAL || key == GLFW_KEY_KP_ADD)) ++heard(window).textSteps;
+    if (control && (key == GLFW_KEY_MINUS || key == GLFW_KEY_KP_SUBTRACT)) --heard(window).textSteps;
+    if (control && (key == GLFW_KEY_0 || key == GLFW_KEY_KP_0)) heard(window).textReset = true;
     // Plain letters belong to whoever is being typed into.
     if (control || ImGui::GetIO().WantTextInput) return;
     switch (key) {
     case GLFW_KEY_H: struck.help = true; break;
     case GLFW_KEY_F: struck.frameScene = true; break;
+    case GLFW_KEY_HOME: struck.reset = true; break;
+    case GLFW_KEY_C: struck.next = true; break;
+    case GLFW_KEY_G: struck.handles = true; break;
     case GLFW_KEY_R: struck.restart = true; break;
     case GLFW_KEY_V: struck.show = true; break;
     case GLFW_KEY_SPACE: struck.play = true; break;
@@ -180,17 +228,33 @@ void Window::onStroke(GLFWwindow* window, int key, int modifiers) {
     }
 }
 
-Keys keysOf(const Window& window, const Keys& struck) {
+Keys keysOf(Window& window, const Keys& struck) {
     Keys keys = struck;
     keys.shift = window.down(GLFW_KEY_LEFT_SHIFT) || window.down(GLFW_KEY_RIGHT_SHIFT);
-    if (ImGui::GetIO().WantTextInput) return keys;
-    keys.light = window.down(GLFW_KEY_L);
-    keys.forward = window.down(GLFW_KEY_W);
-    keys.back = window.down(GLFW_KEY_S);
-    keys.left = window.down(GLFW_KEY_A);
-    keys.right = window.down(GLFW_KEY_D);
-    keys.up = window.down(GLFW_KEY_E);
-    keys.down = window.down(GLFW_KEY_Q);
+    keys.control = window.down(GLFW_KEY_LEFT_CONTROL) || window.down(GLFW_KEY_RIGHT_CONTROL);
+    const bool typing = ImGui::GetIO().WantTextInput;
+    keys.light = !typing && window.down(GLFW_KEY_L);
+    const auto held = [&](int key) {
+        const float seconds = window.secondsDown(key);
+        return typing ? 0 : seconds;
+    };
+    keys.forward = held(GLFW_KEY_W);
+    keys.back = held(GLFW_KEY_S);
+    keys.left = held(GLFW_KEY_A);
+    keys.right = held(GLFW_KEY_D);
+    keys.rise = held(GLFW_KEY_E);
+    keys.sink = held(GLFW_KEY_Q);
+    keys.arrowLeft = held(GLFW_KEY_LEFT);
+    keys.arrowRight = held(GLFW_KEY_RIGHT);
+    keys.arrowUp = held(GLFW_KEY_UP);
+    keys.arrowDown = held(GLFW_KEY_DOWN);
+    keys.nearer = held(GLFW_KEY_PAGE_UP);
+    keys.further = held(GLFW_KEY_PAGE_DOWN);
+    keys.smaller = held(GLFW_KEY_COMMA);
+    keys.larger = held(GLFW_KEY_PERIOD);
+    keys.slow = held(GLFW_KEY_MINUS);
+    keys.fast = held(GLFW_KEY_EQUAL);
+    if (keys.control) keys.slow = keys.fast = 0; // the size of text
     return keys;
 }
 
@@ -220,7 +284,7 @@ public:
 
     // Fits theme and font to the monitor; false: there is no font with Greek letters.
     bool fit() {
-        const float dots = window_.contentScale(), pixels = std::max(window_.pixelsPerUnit(), 0.01f);
+        const float dots = window_.contentScale() * textScale_, pixels = std::max(window_.pixelsPerUnit(), 0.01f);
         if (dots == dots_ && pixels == pixels_) return true;
         dots_ = dots;
         pixels_ = pixels;
@@ -230,6 +294,12 @@ public:
         ImGui_ImplOpenGL3_DestroyFontsTexture();
         ImGui_ImplOpenGL3_CreateFontsTexture();
         return found;
+    }
+
+    // By a tenth each; reset: as the monitor wants it.
+    void scaleText(int steps, bool reset) {
+        textSteps_ = reset ? 0 : std::clamp(textSteps_ + steps, -5, 20);
+        textScale_ = 1 + 0.1f * static_cast<float>(textSteps_);
     }
 
     void begin() {
@@ -274,6 +344,8 @@ private:
 
     Window& window_;
     float dots_ = 0, pixels_ = 0;
+    int textSteps_ = 0;
+    float textScale_ = 1;
 };
 
 // FOLDER/SCENE-TECHNIQUE-YYYYMMDD-HHMMSS or, of a buffer, FOLDER/SCENE-TECHNIQUE-WHAT-..., and the ending, with a
@@ -432,13 +504,14 @@ int runWindow(Session& session, glm::ivec2 size) {
             glfwWaitEvents();
             continue;
         }
-        if (workspace.moving() || framesAfterInput > 0) {
+        const double patience = framesAfterInput > 0 ? 0 : workspace.patience();
+        if (patience <= 0) {
             glfwPollEvents();
             framesAfterInput = std::max(framesAfterInput - 1, 0);
         } else {
             const double start = glfwGetTime();
-            glfwWaitEventsTimeout(idleSeconds);
-            if (glfwGetTime() - start < idleSeconds) framesAfterInput = settlingFrames;
+            glfwWaitEventsTimeout(patience);
+            if (glfwGetTime() - start < patience) framesAfterInput = settlingFrames;
         }
         if (!window.visible()) continue;
         const auto now = std::chrono::steady_clock::now();
@@ -447,6 +520,7 @@ int runWindow(Session& session, glm::ivec2 size) {
 
         Heard heard = window.take();
         if (!heard.dropped.empty()) workspace.openScene({std::move(heard.dropped.front())});
+        gui.scaleText(heard.textSteps, heard.textReset);
         gui.fit();
         gui.begin();
         workspace.draw(keysOf(window, heard.struck), seconds, window.pixelsPerUnit());

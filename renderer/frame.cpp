@@ -136,7 +136,7 @@ Frame buildFrame(Flow& flow, const Session& session, const SceneState& state, co
     const Image shadow = session.techniques.technique().build(flow, instance, inputs);
     const bool lit = session.display.show == Show::Lit;
     const Image display = show(flow, session, lit ? shade(flow, session, view, surfaces, shadow) : shadow);
-    return {shadow, display};
+    return {shadow, display, surfaces.buffer.depth};
 }
 
 } // namespace penumbra

@@ -11,6 +11,7 @@ namespace penumbra {
 struct Frame {
     Image shadow;  // ψ
     Image display; // RGBA8, sRGB
+    Image depth;   // of the surfaces seen, along the view axis [m]; 0: none
 };
 
 // Appends the passes of a session's frame to a flow that has begun. `geometry` may be null: the passes are listed all

@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <limits>
 
 namespace penumbra {
 
@@ -46,6 +47,11 @@ void Renderer::reset() {
 }
 
 void Renderer::render(const Session& session, Timing timing) {
+    begin(session, timing);
+    advance(std::numeric_limits<double>::infinity());
+}
+
+void Renderer::begin(const Session& session, Timing timing) {
     if (!drawn_ || drawn_->scene_ != session.scene) {
         if (!next_ || next_->scene_ != session.scene) next_.emplace(session.scene);
         drawn_ = std::move(next_);
@@ -56,19 +62,49 @@ void Renderer::render(const Session& session, Timing timing) {
     state.update(session.clip, session.time, session.ground);
     drawn_->geometry_->update(state);
 
-    const glm::mat4 clipFromWorld = sessionView(session, state.bounds()).clipFromWorld;
+    view_ = sessionView(session, state.bounds());
     flow_.begin();
     try {
-        frame_ = buildFrame(flow_, session, state, drawn_->geometry_.get(), lastClipFromWorld_.value_or(clipFromWorld));
+        frame_ = buildFrame(flow_, session, state, drawn_->geometry_.get(),
+                            lastClipFromWorld_.value_or(view_.clipFromWorld));
         flow_.refuseAbove(session.textureLimit);
-        runner_.run(flow_, timing);
+        runner_.begin(flow_, timing);
     } catch (...) {
-        reset();
-        state.restart();
-        frame_.reset();
+        fail();
         throw;
     }
-    lastClipFromWorld_ = clipFromWorld;
+    lastClipFromWorld_ = view_.clipFromWorld;
+}
+
+bool Renderer::advance(double milliseconds) {
+    try {
+        if (!runner_.step(flow_, milliseconds)) return false;
+    } catch (...) {
+        fail();
+        throw;
+    }
+    picture_ = runner_.share(flow_, frame_->display);
+    return true;
+}
+
+// Nothing of the frame is of use.
+void Renderer::fail() {
+    reset();
+    runner_.giveUp();
+    drawn_->state_.restart();
+    frame_.reset();
+    picture_.reset();
+}
+
+std::optional<glm::vec3> Renderer::surfaceAt(glm::ivec2 pixel) const {
+    if (!picture_ || underWay()) return std::nullopt;
+    const glm::ivec2 fromBelow(pixel.x, view_.size.y - 1 - pixel.y);
+    if (glm::any(glm::lessThan(fromBelow, glm::ivec2(0))) || glm::any(glm::greaterThanEqual(fromBelow, view_.size)))
+        return std::nullopt;
+    const float depth = runner_.texture(flow_, frame_->depth).readTexel(fromBelow.x, fromBelow.y);
+    if (!(depth > 0)) return std::nullopt;
+    const glm::vec2 centre = glm::vec2(fromBelow) + 0.5f;
+    return view_.eyeWorld + depth * (view_.rayCorner + centre.x * view_.rayDx + centre.y * view_.rayDy);
 }
 
 Renderer::Pixels Renderer::read(Image image, int layer, int level) const {

@@ -40,6 +40,12 @@ public:
     // more textures than session.textureLimit or one that the driver cannot have. There is no frame to look at then,
     // and the next one is a first one.
     void render(const Session& session, Timing timing = Timing::Off);
+    // The same in parts, for those who must not be kept waiting: begin() takes over what the session says now, and each
+    // advance() goes on for about so long; true when the frame is finished. Until then the images are partly those of
+    // the frame before, but picture() is whole.
+    void begin(const Session& session, Timing timing);
+    bool advance(double milliseconds);
+    bool underWay() const { return runner_.underWay(); }
     // The next session that shows this scene finds it ready; a scene that nobody prepared is prepared by render().
     void take(PreparedScene prepared) { next_ = std::move(prepared); }
     // Drops all history: the next frame is the first.
@@ -48,11 +54,16 @@ public:
     const Flow& flow() const { return flow_; }
     const FlowRunner& runner() const { return runner_; }
     const SceneState& state() const { return drawn_->state_; } // of the scene that render() drew last
-    // Whether the last render() succeeded, so that there are images.
-    bool hasFrame() const { return frame_.has_value(); }
+    // Whether a frame was finished and none has failed since, so that there are images.
+    bool hasFrame() const { return picture_ != nullptr; }
     // Images of the last frame. `shadow` is ψ; `display` is RGBA8, sRGB encoded, row 0 below as OpenGL has it.
     Image display() const { return frame_->display; }
     Image shadow() const { return frame_->shadow; }
+    // The display image of the frame that was finished last; null if there is none, or the last attempt failed.
+    const Texture* picture() const { return picture_.get(); }
+    // The surface that picture() shows at a pixel, counted from its upper left corner; nothing where there is none.
+    // Reads one texel. Not while a frame is under way.
+    std::optional<glm::vec3> surfaceAt(glm::ivec2 pixel) const;
 
     // Reads an image back: `channels` floats a texel, row 0 at the top. Stalls.
     struct Pixels {
@@ -73,12 +84,16 @@ public:
     const std::string& driver() const { return driver_; } // "llvmpipe (...), Mesa ..."
 
 private:
+    void fail();
+
     std::string driver_; // first: its initialisation refuses what is not OpenGL 4.5
     ProgramLibrary programs_{shaderFolder()};
     Flow flow_;
     FlowRunner runner_{programs_};
     std::optional<PreparedScene> drawn_, next_;
     std::optional<Frame> frame_;
+    std::shared_ptr<const Texture> picture_;
+    View view_; // of the frame
     std::optional<glm::mat4> lastClipFromWorld_;
     bool software_ = false;
 };

@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Linear light to sRGB for the screen, or ψ as a picture: white is lit. 1 texture read a pixel.
+#include "band.glsl"
 #include "lib/srgb.glsl"
-
-layout(local_size_x = 8, local_size_y = 8) in;
 
 layout(std140, binding = 0) uniform Constants {
     vec4 exposure_show; // x = factor on linear light, y = 0: lit, 1: ψ
@@ -12,7 +11,7 @@ uniform writeonly image2D display;
 
 void main()
 {
-    ivec2 pixel = ivec2(gl_GlobalInvocationID.xy);
+    ivec2 pixel = texelHere().xy;
     vec4 value = texelFetch(shown, pixel, 0);
     vec3 linear = clamp(value.rgb * exposure_show.x, 0.0, 1.0);
     vec3 encoded = vec3(srgbFromLinear(linear.r), srgbFromLinear(linear.g), srgbFromLinear(linear.b));

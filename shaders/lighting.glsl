@@ -2,10 +2,9 @@
 // Ambient light and the area light's diffuse reflection, no further than shadows need: the light acts as from its centre
 // (its share that a surface does not see is ψ), with the fall-off of a distance and, for rectangle and disk, of the
 // emitter's own cosine. 4 texture reads a pixel.
+#include "band.glsl"
 #include "shared/view.glsl.h"
 #include "lib/octahedral.glsl"
-
-layout(local_size_x = 8, local_size_y = 8) in;
 
 layout(std140, binding = 0) uniform Constants {
     ViewBlock view;
@@ -23,7 +22,7 @@ const vec3 background = vec3(0.10, 0.11, 0.13);
 
 void main()
 {
-    ivec2 pixel = ivec2(gl_GlobalInvocationID.xy); // fetches and stores outside the picture do nothing
+    ivec2 pixel = texelHere().xy; // fetches and stores outside the picture do nothing
     float d = texelFetch(depth, pixel, 0).x;
     vec2 centre = vec2(pixel) + 0.5;
     vec3 positionWorld = view.eyeWorld.xyz + d * (view.rayCorner.xyz + centre.x * view.rayDx.xyz + centre.y * view.rayDy.xyz);

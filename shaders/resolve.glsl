@@ -1,11 +1,10 @@
 // SPDX-License-Identifier: MIT
 // The front half of every pass that turns a geometry buffer and a shadow map into ψ: which surface a pixel shows, where
 // it falls on the map, and how far a bias moves it. A technique's shader includes this and writes main().
+#include "band.glsl"
 #include "shared/view.glsl.h"
 #include "lib/octahedral.glsl"
 #include "lib/light_space.glsl"
-
-layout(local_size_x = 8, local_size_y = 8) in;
 
 layout(std140, binding = 0) uniform Constants {
     ViewBlock view;
@@ -47,7 +46,7 @@ bool lightBelowHorizon(vec3 positionLight, vec3 n)
 Receiver findReceiver(float normalOffset)
 {
     Receiver r;
-    r.pixel = ivec2(gl_GlobalInvocationID.xy);
+    r.pixel = texelHere().xy;
     float eyeDepth = texelFetch(depth, r.pixel, 0).x;
     vec2 centre = vec2(r.pixel) + 0.5;
     vec3 ray = view.rayCorner.xyz + centre.x * view.rayDx.xyz + centre.y * view.rayDy.xyz;

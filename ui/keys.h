@@ -5,17 +5,23 @@
 
 namespace penumbra {
 
-// What the keyboard says in one frame, free of any window system. Held keys are true as long as they are down, the
-// others in the frame of the stroke only.
+// What the keyboard says in one frame, free of any window system.
 struct Keys {
-    // held
-    bool light = false;                                              // L
-    bool forward = false, back = false, left = false, right = false; // W S A D
-    bool up = false, down = false;                                   // E Q
-    bool shift = false;
-    // struck
+    // How long each was down in this frame [s], so that slow frames move as far as fast ones. The first frame of a
+    // stroke counts a little more: a tap moves a little.
+    float forward = 0, back = 0, left = 0, right = 0, rise = 0, sink = 0; // W S A D E Q
+    float arrowLeft = 0, arrowRight = 0, arrowUp = 0, arrowDown = 0;      // arrow keys
+    float nearer = 0, further = 0, smaller = 0, larger = 0, slow = 0,
+          fast = 0; // Page Up, Page Down, comma, period, − +
+    // Whether they are down.
+    bool light = false; // L
+    bool shift = false, control = false;
+    // Whether they were struck in this frame.
     bool help = false;          // H, F1
     bool frameScene = false;    // F
+    bool reset = false;         // Home
+    bool next = false;          // C
+    bool handles = false;       // G
     bool restart = false;       // R
     bool show = false;          // V
     bool play = false;          // space
@@ -32,15 +38,20 @@ struct KeyHelp {
 };
 inline constexpr KeyHelp keyHelp[] = {
     {"Camera, in the view", ""},
-    {"left drag", "orbit round the target"},
-    {"middle drag, Shift + left drag", "pan"},
-    {"wheel", "nearer or further"},
-    {"right drag", "look around; with W A S D fly, E up, Q down"},
-    {"wheel while flying", "speed"},
-    {"F", "frame the scene"},
+    {"left drag,  arrow keys", "orbit round the target"},
+    {"middle or Shift + left drag,  Shift + arrows", "pan"},
+    {"wheel, Ctrl + left drag,  Page Up, Page Down", "nearer or further"},
+    {"right drag,  Ctrl + arrows", "look around"},
+    {"W A S D,  E up,  Q down", "fly; Shift: four times as fast"},
+    {"+  −,  wheel during a right drag", "faster or slower"},
+    {"double click", "orbit round the surface under the pointer"},
+    {"F,  Home", "frame the scene; back to the scene's own camera"},
+    {"C", "next camera of the scene"},
     {"Light, in the view", ""},
-    {"L + left drag", "turn the light round its target"},
-    {"L + wheel", "move it nearer or further"},
+    {"hold L", "all of these move the light instead: turn it round its target, shift both, nearer or further, fly; "
+               "double click aims it, Home resets it, C takes the next light of the scene"},
+    {"comma, period", "smaller or larger"},
+    {"G", "show or hide its handles: drag centre, target or edge"},
     {"Images, in the buffers", ""},
     {"wheel, left drag", "zoom, move"},
     {"click, right click", "pin a texel, let it go"},
@@ -53,6 +64,7 @@ inline constexpr KeyHelp keyHelp[] = {
     {"B,  T", "buffers, timings"},
     {"Ctrl + O", "open a scene"},
     {"F12,  Shift + F12", "save a picture of the view, of the whole window"},
+    {"Ctrl + plus, minus, 0", "larger or smaller text, as at first"},
     {"H,  F1", "this help"},
     {"Ctrl + Q", "quit"},
 };

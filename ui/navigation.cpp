@@ -13,6 +13,7 @@ namespace {
 
 constexpr float steepest = 89.9f; // degrees above the horizon; at 90 the azimuth would be lost
 constexpr float zoomPerNotch = 0.85f;
+constexpr float slowestFlight = 0.001f, fastestFlight = 10; // scene sizes a second
 
 // `offset` turned about the axis by `right` and towards the axis by `up` degrees.
 glm::vec3 turned(glm::vec3 offset, glm::vec3 axis, float right, float up) {
@@ -39,6 +40,17 @@ Axes axesOf(const Camera& camera) {
     return {right, glm::cross(right, forward), forward};
 }
 
+glm::vec3 inWorld(const Camera& camera, glm::vec3 rightUpForward) {
+    const Axes axes = axesOf(camera);
+    return rightUpForward.x * axes.right + rightUpForward.y * axes.up + rightUpForward.z * axes.forward;
+}
+
+// How far something at that distance moves to follow the pointer by `pixels` to the right and down.
+glm::vec3 shiftOf(const Camera& camera, glm::vec2 pixels, float viewHeight, float distance) {
+    const float metresPerPixel = 2 * distance * std::tan(glm::radians(camera.fovY) / 2) / std::max(viewHeight, 1.0f);
+    return metresPerPixel * inWorld(camera, {pixels.x, -pixels.y, 0});
+}
+
 // How near and how far a thing may be moved from what it looks at.
 float clampDistance(float distance, float sceneSize) {
     return std::clamp(distance, 1e-3f * sceneSize, 100.0f * sceneSize);
@@ -55,12 +67,9 @@ void look(Camera& camera, float right, float up) {
 }
 
 void pan(Camera& camera, glm::vec2 pixels, float viewHeight) {
-    const float distance = glm::length(camera.target - camera.eye);
-    const float metresPerPixel = 2 * distance * std::tan(glm::radians(camera.fovY) / 2) / std::max(viewHeight, 1.0f);
-    const Axes axes = axesOf(camera);
-    const glm::vec3 shift = metresPerPixel * (-pixels.x * axes.right + pixels.y * axes.up);
-    camera.eye += shift;
-    camera.target += shift;
+    const glm::vec3 shift = shiftOf(camera, pixels, viewHeight, glm::length(camera.target - camera.eye));
+    camera.eye -= shift;
+    camera.target -= shift;
 }
 
 void zoom(Camera& camera, float notches, float sceneSize) {
@@ -70,9 +79,7 @@ void zoom(Camera& camera, float notches, float sceneSize) {
 }
 
 void fly(Camera& camera, glm::vec3 rightUpForward) {
-    const Axes axes = axesOf(camera);
-    const glm::vec3 shift =
-        rightUpForward.x * axes.right + rightUpForward.y * axes.up + rightUpForward.z * axes.forward;
+    const glm::vec3 shift = inWorld(camera, rightUpForward);
     camera.eye += shift;
     camera.target += shift;
 }
@@ -94,10 +101,52 @@ void orbitLight(AreaLight& light, float right, float up) {
     setLightDirection(light, direction);
 }
 
-void moveLightAway(AreaLight& light, float notches, float sceneSize) {
+void moveLight(AreaLight& light, float notches, float sceneSize) {
     LightDirection direction = lightDirection(light);
-    direction.distance = clampDistance(direction.distance / notchFactor(notches), sceneSize);
+    direction.distance = clampDistance(direction.distance * notchFactor(notches), sceneSize);
     setLightDirection(light, direction);
+}
+
+void scaleLight(AreaLight& light, glm::vec2 factors) {
+    const auto scaled = [](float value, float factor, Range limits) {
+        return std::clamp(value * factor, static_cast<float>(limits.min), static_cast<float>(limits.max));
+    };
+    if (light.shape == LightShape::Directional) {
+        const float tangent = std::tan(0.5f * glm::radians(light.size.x)) * factors.x;
+        light.size = glm::vec2(scaled(glm::degrees(2 * std::atan(tangent)), 1, limits::lightDegrees));
+    } else {
+        light.size = {scaled(light.size.x, factors.x, limits::lightMetres),
+                      scaled(light.size.y, factors.y, limits::lightMetres)};
+    }
+}
+
+void move(Camera& camera, const Motion& motion, float viewHeight, float sceneSize) {
+    if (motion.turn != glm::vec2(0)) orbit(camera, motion.turn.x, motion.turn.y);
+    if (motion.look != glm::vec2(0)) look(camera, motion.look.x, motion.look.y);
+    if (motion.pan != glm::vec2(0)) pan(camera, motion.pan, viewHeight);
+    if (motion.nearer != 0) zoom(camera, motion.nearer, sceneSize);
+    if (motion.fly != glm::vec3(0)) fly(camera, motion.fly);
+}
+
+void move(AreaLight& light, const Camera& camera, const Motion& motion, float viewHeight, float sceneSize) {
+    if (motion.turn != glm::vec2(0)) orbitLight(light, motion.turn.x, motion.turn.y);
+    if (motion.pan != glm::vec2(0)) {
+        const glm::vec3 shift =
+            shiftOf(camera, motion.pan, viewHeight, glm::dot(light.target - camera.eye, axesOf(camera).forward));
+        light.position += shift;
+        light.target += shift;
+    }
+    if (motion.nearer != 0) moveLight(light, motion.nearer, sceneSize);
+    if (motion.fly != glm::vec3(0))
+        put(light.position, light.position + inWorld(camera, motion.fly), light.target, sceneSize);
+}
+
+void put(glm::vec3& point, glm::vec3 wanted, glm::vec3 other, float sceneSize) {
+    if (glm::distance(wanted, other) >= 1e-5f * sceneSize) point = wanted;
+}
+
+void ViewSettings::changeSpeed(float notches) {
+    flySpeed = std::clamp(flySpeed * std::pow(1.25f, notches), slowestFlight, fastestFlight);
 }
 
 LightDirection lightDirection(const AreaLight& light) {

@@ -1,69 +1,14 @@
 // SPDX-License-Identifier: MIT
 #include "ui/side_panel.h"
 
-#include "ui/navigation.h"
+#include "ui/numbers.h"
 
 #include <algorithm>
 #include <cmath>
 
 namespace penumbra {
 
-namespace {
-
-// A printf format that shows a thousandth of the scene's size.
-ShortText metreFormat(float sceneSize) {
-    const int digits = std::clamp(3 - static_cast<int>(std::floor(std::log10(sceneSize))), 0, 5);
-    return ShortText("%.{}f", digits);
-}
-
-// `speed` per pixel. Typed numbers that are out of the limits are brought back into them.
-bool dragNumber(const char* id, float& value, float speed, Range limits, const char* format,
-                ImGuiSliderFlags flags = ImGuiSliderFlags_AlwaysClamp) {
-    float edited = value;
-    if (!ImGui::DragFloat(id, &edited, speed, static_cast<float>(limits.min), static_cast<float>(limits.max), format,
-                          flags) ||
-        !std::isfinite(edited))
-        return false;
-    value = edited;
-    return true;
-}
-
-// A length or angle over many decades: 100 pixels are a twentieth of them.
-void dragDecades(const char* id, float& value, Range limits, const char* format) {
-    const float speed = 0.0005f * static_cast<float>(limits.max - limits.min); // ImGui divides by the range
-    dragNumber(id, value, speed, limits, format, ImGuiSliderFlags_AlwaysClamp | ImGuiSliderFlags_Logarithmic);
-}
-
-bool dragPoint(const char* id, glm::vec3& point, float speed, const char* format) {
-    glm::vec3 edited = point;
-    const float limit = static_cast<float>(limits::coordinate.max);
-    if (!ImGui::DragFloat3(id, &edited.x, speed, -limit, limit, format, ImGuiSliderFlags_AlwaysClamp)) return false;
-    for (int i = 0; i < 3; ++i)
-        if (!std::isfinite(edited[i])) return false;
-    point = edited;
-    return true;
-}
-
-// Rows for two points that must not meet: where a thing is and where it looks.
-void pointRows(const char* placeLabel, glm::vec3& place, glm::vec3& target, const SceneFacts& facts) {
-    const glm::vec3 oldPlace = place, oldTarget = target;
-    const float speed = 0.002f * facts.size;
-    const ShortText format = metreFormat(facts.size);
-    row(placeLabel);
-    dragPoint("##place", place, speed, format.begin());
-    tooltip("x, y, z in metres. Drag, or Ctrl+click to type.");
-    row("Target  [m]");
-    dragPoint("##target", target, speed, format.begin());
-    tooltip("x, y, z in metres. Drag, or Ctrl+click to type.");
-    if (glm::length(target - place) < 1e-5f * facts.size) {
-        place = oldPlace;
-        target = oldTarget;
-    }
-}
-
-} // namespace
-
-Requests SidePanel::draw(Session& session, const SceneFacts& facts, Playback& playback) {
+Requests SidePanel::draw(Session& session, const SceneFacts& facts, Playback& playback, ViewSettings& view) {
     Requests requests;
     if (section("Scene", true)) {
         ImGui::PushID("scene");
@@ -76,12 +21,12 @@ Requests SidePanel::draw(Session& session, const SceneFacts& facts, Playback& pl
     if (section("Presets", false)) presets(session, requests);
     if (section("Light", true)) {
         ImGui::PushID("light");
-        light(session, facts);
+        light_.draw(session, facts, view);
         ImGui::PopID();
     }
     if (section("Camera", false)) {
         ImGui::PushID("camera");
-        camera(session, facts);
+        camera_.draw(session, facts, view);
         ImGui::PopID();
     }
     if (section("Display", true)) displayControls(session.display);
@@ -320,76 +265,6 @@ void SidePanel::presets(const Session& session, Requests& requests) {
         if (ImGui::Button("Keep it")) ImGui::CloseCurrentPopup();
         ImGui::EndPopup();
     }
-}
-
-void SidePanel::light(Session& session, const SceneFacts& facts) {
-    AreaLight& light = session.light;
-    row("Shape");
-    const auto shapes = lightShapeNames();
-    if (ImGui::BeginCombo("##shape", ShortText("{}", shapes[static_cast<size_t>(light.shape)]).begin())) {
-        for (size_t i = 0; i < shapes.size(); ++i)
-            if (ImGui::Selectable(ShortText("{}", shapes[i]).begin(), static_cast<size_t>(light.shape) == i))
-                changeShape(light, static_cast<LightShape>(i));
-        ImGui::EndCombo();
-    }
-    if (light.shape == LightShape::Directional) {
-        row("Angular diameter");
-        dragDecades("##angle", light.size.x, limits::lightDegrees, "%.3g°");
-        tooltip("Full angle under which the light is seen; the sun has 0.533°");
-    } else {
-        row(light.shape == LightShape::Disk ? "Diameter" : "Width");
-        dragDecades("##width", light.size.x, limits::lightMetres, "%.4g m");
-        if (light.shape == LightShape::Rectangle) {
-            row("Height");
-            dragDecades("##height", light.size.y, limits::lightMetres, "%.4g m");
-        }
-    }
-    pointRows("Position  [m]", light.position, light.target, facts);
-
-    LightDirection direction = lightDirection(light);
-    row("Azimuth");
-    bool turned = dragNumber("##azimuth", direction.azimuth, 0.5f, {-180, 180}, "%.1f°");
-    tooltip("Round the target, from +Z towards +X (L + drag in the view)");
-    row("Elevation");
-    turned |= dragNumber("##elevation", direction.elevation, 0.5f, {-90, 90}, "%.1f°");
-    row("Distance");
-    turned |=
-        dragNumber("##distance", direction.distance, 0.003f * facts.size, {1e-4 * facts.size, limits::coordinate.max},
-                   ShortText("{} m", metreFormat(facts.size).view()).begin());
-    tooltip("From the target (L + wheel in the view)");
-    if (turned) setLightDirection(light, direction);
-
-    row("Intensity");
-    dragNumber("##intensity", light.intensity, 0.01f, {0, 1000}, "%.3f");
-    tooltip("Irradiance at the target when it faces the light, relative to white");
-    row("Colour");
-    ImGui::ColorEdit3("##colour", &light.colour.x, ImGuiColorEditFlags_Float | ImGuiColorEditFlags_NoInputs);
-    tooltip("Linear, before the intensity");
-    row("Show in the view");
-    ImGui::Checkbox("##show", &showLight_);
-    if (ImGui::Button("Reset light")) light = defaultLight(*session.scene, facts.pose);
-}
-
-void SidePanel::camera(Session& session, const SceneFacts& facts) {
-    Camera& camera = session.camera;
-    pointRows("Eye  [m]", camera.eye, camera.target, facts);
-    row("Field of view");
-    dragNumber("##fov", camera.fovY, 0.2f, limits::fovY, "%.1f°");
-    tooltip("Vertical");
-    if (!session.scene->cameras.empty()) {
-        row("Of the scene");
-        if (ImGui::BeginCombo("##cameras", "choose…")) {
-            for (size_t i = 0; i < session.scene->cameras.size(); ++i) {
-                const NamedCamera& named = session.scene->cameras[i];
-                ImGui::PushID(static_cast<int>(i));
-                if (ImGui::Selectable(named.name.empty() ? ShortText("camera {}", i + 1).begin() : named.name.c_str()))
-                    camera = sceneCamera(*facts.scene, facts.pose, named);
-                ImGui::PopID();
-            }
-            ImGui::EndCombo();
-        }
-    }
-    if (ImGui::Button("Reset camera")) camera = defaultCamera(*session.scene, facts.pose);
 }
 
 void displayControls(DisplaySettings& display) {

@@ -2,6 +2,8 @@
 // The column on the right: scene, technique, parameters, presets, light, camera, display.
 #pragma once
 
+#include "ui/camera_panel.h"
+#include "ui/light_panel.h"
 #include "ui/parameter_panel.h"
 #include "ui/scene_facts.h"
 
@@ -45,23 +47,24 @@ struct Requests {
 class SidePanel {
 public:
     // Draws into the current ImGui window.
-    Requests draw(Session& session, const SceneFacts& facts, Playback& playback);
+    Requests draw(Session& session, const SceneFacts& facts, Playback& playback, ViewSettings& view);
 
     void setPresetNames(PresetNames names) { presetNames_ = std::move(names); }
     // The values are now those of this preset of the chosen technique; an empty name: of none.
     void takePreset(const TechniqueShelf& techniques, std::string_view name);
     void renamePreset(std::string_view name) { preset_ = name; } // the chosen one
-    bool lightShown() const { return showLight_; }
+    LightPanel& light() { return light_; }
+    CameraPanel& camera() { return camera_; }
 
 private:
     void scene(Session& session, const SceneFacts& facts, Requests& requests);
     void choices(const Scene& scene, Requests& requests);
     void technique(Session& session, Requests& requests);
     void presets(const Session& session, Requests& requests);
-    void light(Session& session, const SceneFacts& facts);
-    void camera(Session& session, const SceneFacts& facts);
 
     ParameterPanel parameters_;
+    LightPanel light_;
+    CameraPanel camera_;
     std::vector<std::string> builtIns_ = builtInScenes();
     PresetNames presetNames_;
     std::string presetOf_, preset_;      // technique and name of the preset taken last
@@ -69,7 +72,6 @@ private:
     const Scene* shownScene_ = nullptr;  // whose path stands in the path field
     TextField<4096> path_;
     TextField<101> presetName_;
-    bool showLight_ = false;
 };
 
 void timeControls(Session& session, const SceneFacts& facts, Playback& playback);

@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "ui/viewport.h"
 
-#include "ui/navigation.h"
-
 #include <algorithm>
 #include <bit>
 #include <cmath>
@@ -11,10 +9,22 @@ namespace penumbra {
 
 namespace {
 
-constexpr float degreesPerUnit = 0.3f; // of a drag, at 96 dots per inch
+constexpr float degreesPerUnit = 0.3f, notchesPerUnit = 0.05f; // of a drag, at 96 dots per inch
+
+// A second of a key:
+constexpr float degreesPerSecond = 60;
+constexpr float viewsPerSecond = 0.5f; // of panning, heights of the view
+constexpr float notchesPerSecond = 8;
+constexpr float sprint = 4; // times as fast with Shift
+constexpr float sizePerSecond = 2.5f;
+
+constexpr double glimpse = 1.2; // how long a hint stays [s]
 
 constexpr uint64_t framesToSettle = 6; // more than the timer's ring of queries
 constexpr double dearFrame = 50;       // [ms]
+// What a frame of the window may spend on the picture [ms], so that it answers well within a tenth of a second even
+// while pictures take seconds.
+constexpr double shareOfFrame = 40;
 
 template <class T> void append(std::vector<uint32_t>& words, const T& value) {
     static_assert(std::is_trivially_copyable_v<T> && sizeof(T) % 4 == 0);
@@ -22,10 +32,77 @@ template <class T> void append(std::vector<uint32_t>& words, const T& value) {
     words.insert(words.end(), bits.begin(), bits.end());
 }
 
+glm::vec2 vec(ImVec2 v) { return {v.x, v.y}; }
+ImVec2 vec(glm::vec2 v) { return {v.x, v.y}; }
+
+// Over any picture: a dark edge around the colour.
+void inkLine(ImDrawList& list, glm::vec2 from, glm::vec2 to, ImU32 ink) {
+    const float width = 0.13f * ImGui::GetFontSize();
+    list.AddLine(vec(from), vec(to), IM_COL32(0, 0, 0, 130), 2.2f * width);
+    list.AddLine(vec(from), vec(to), ink, width);
+}
+
+void inkCircle(ImDrawList& list, glm::vec2 centre, float radius, ImU32 ink, bool filled) {
+    const float width = 0.13f * ImGui::GetFontSize();
+    if (filled) {
+        list.AddCircleFilled(vec(centre), radius + 0.6f * width, IM_COL32(0, 0, 0, 150));
+        list.AddCircleFilled(vec(centre), radius, ink);
+    } else {
+        list.AddCircle(vec(centre), radius, IM_COL32(0, 0, 0, 130), 0, 2.2f * width);
+        list.AddCircle(vec(centre), radius, ink, 0, width);
+    }
+}
+
+// A line of text on a dark ground, centred on `x`.
+void drawHint(float x, float y, const ShortText& line) {
+    const float padding = 0.5f * ImGui::GetFontSize();
+    const ImVec2 extent = ImGui::CalcTextSize(line.begin(), line.end());
+    const ImVec2 from{std::round(x - extent.x / 2 - padding), std::round(y)};
+    ImVec4 paper = ImGui::GetStyleColorVec4(ImGuiCol_PopupBg);
+    paper.w = 0.9f;
+    ImDrawList& list = *ImGui::GetWindowDrawList();
+    list.AddRectFilled(from, {from.x + extent.x + 2 * padding, from.y + extent.y + padding}, ImGui::GetColorU32(paper),
+                       0.3f * ImGui::GetFontSize());
+    list.AddText({from.x + padding, from.y + padding / 2}, ImGui::GetColorU32(colour::text), line.begin(), line.end());
+}
+
+ShortText sizeText(const AreaLight& light) {
+    switch (light.shape) {
+    case LightShape::Rectangle: return ShortText("{:.3g} m × {:.3g} m", light.size.x, light.size.y);
+    case LightShape::Disk: return ShortText("{:.3g} m across", light.size.x);
+    case LightShape::Directional: return ShortText("{:.3g}°", light.size.x);
+    }
+    return ShortText("");
+}
+
+// What a handle does, or while it is held what it has done.
+ShortText handleText(LightHandle handle, const AreaLight& light, bool held) {
+    const glm::vec3 target = light.target;
+    const LightDirection direction = lightDirection(light);
+    switch (handle) {
+    case LightHandle::None: break;
+    case LightHandle::Centre:
+        if (!held) return ShortText("Light: drag to move it");
+        return ShortText("{:.3g} m from the target, {:.0f}° high", direction.distance, direction.elevation);
+    case LightHandle::Target:
+        if (!held) return ShortText("Light's target: drag to aim");
+        return ShortText("({:.3g}, {:.3g}, {:.3g}) m", target.x, target.y, target.z);
+    case LightHandle::Width:
+    case LightHandle::Height:
+        if (held) return sizeText(light);
+        return light.shape == LightShape::Rectangle
+                   ? ShortText("Light's edge: drag to resize; Shift: both sides\n{}", sizeText(light).view())
+                   : ShortText("Light's edge: drag to resize\n{}", sizeText(light).view());
+    }
+    return ShortText("");
+}
+
 } // namespace
 
-void Viewport::draw(Session& session, Renderer& renderer, const SceneFacts& facts, const Keys& keys, Timing timing,
-                    bool always, bool showLight, float seconds, float pixelsPerUnit) {
+float Viewport::unit() const { return std::max(ImGui::GetFontSize(), 1.0f) / 15; }
+
+void Viewport::draw(Session& session, Renderer& renderer, const SceneFacts& facts, const Keys& keys,
+                    ViewSettings& settings, Timing timing, bool always, float pixelsPerUnit) {
     renderedNow_ = false;
     const ImVec2 corner = ImGui::GetCursorScreenPos(), size = ImGui::GetContentRegionAvail();
     const glm::ivec2 pixels(std::lround(size.x * pixelsPerUnit), std::lround(size.y * pixelsPerUnit));
@@ -34,53 +111,131 @@ void Viewport::draw(Session& session, Renderer& renderer, const SceneFacts& fact
     ImGui::InvisibleButton("viewport", size,
                            ImGuiButtonFlags_MouseButtonLeft | ImGuiButtonFlags_MouseButtonMiddle |
                                ImGuiButtonFlags_MouseButtonRight);
-    navigate(session, facts, keys, seconds, size);
+    screen_ = {sessionView(session, facts.boundsWorld), vec(corner), vec(size)};
+    navigate(session, facts, keys, settings);
     const std::vector<std::string>& shaderErrors = renderer.pollShaders();
     render(session, renderer, timing, always);
+    if (point_ && upToDate()) takePoint(session, renderer, facts.size);
     // OpenGL's first row is the lowest.
-    if (renderer.hasFrame())
-        ImGui::GetWindowDrawList()->AddImage(
-            textureId(renderer.runner().texture(renderer.flow(), renderer.display()).name()), corner,
-            {corner.x + size.x, corner.y + size.y}, {0, 1}, {1, 0});
-    if (showLight || keys.light || drag_ == Drag::Light) drawLight(session, corner, size);
-    drawTroubles(shaderErrors, corner, size);
+    if (const Texture* picture = renderer.picture())
+        ImGui::GetWindowDrawList()->AddImage(textureId(picture->name()), corner, {corner.x + size.x, corner.y + size.y},
+                                             {0, 1}, {1, 0});
+    screen_.view = sessionView(session, facts.boundsWorld);
+    if (lightDrawn_) drawLight(session);
+    if (ImGui::GetTime() < targetUntil_) drawTarget(session);
+    if (ImGui::GetTime() < speedUntil_) drawSpeed(settings, facts.size);
+    drawTroubles(shaderErrors);
 }
 
-void Viewport::navigate(Session& session, const SceneFacts& facts, const Keys& keys, float seconds, ImVec2 size) {
+// What the mouse drag of this frame does.
+Motion Viewport::ofMouse() const {
     const ImGuiIO& io = ImGui::GetIO();
-    if (ImGui::IsItemActivated()) {
-        if (ImGui::IsMouseDown(ImGuiMouseButton_Right))
-            drag_ = Drag::Fly;
-        else if (ImGui::IsMouseDown(ImGuiMouseButton_Middle) || keys.shift)
-            drag_ = Drag::Pan;
-        else
-            drag_ = keys.light ? Drag::Light : Drag::Orbit;
+    const glm::vec2 pixels = vec(io.MouseDelta), units = pixels / unit();
+    Motion motion;
+    switch (drag_) {
+    case Drag::None:
+    case Drag::Handle: break;
+    case Drag::Orbit: // the camera's scene, or the light, follows the pointer
+        motion.turn = degreesPerUnit * (dragsLight_ ? glm::vec2(units.x, -units.y) : glm::vec2(-units.x, units.y));
+        break;
+    case Drag::Pan: motion.pan = pixels; break;
+    case Drag::Zoom: motion.nearer = -notchesPerUnit * units.y; break;
+    case Drag::Look: motion.look = -degreesPerUnit * units; break;
     }
+    if (drag_ != Drag::Look && ImGui::IsItemHovered()) motion.nearer += io.MouseWheel;
+    return motion;
+}
+
+Motion Viewport::ofKeys(const Keys& keys, const ViewSettings& settings, float sceneSize) const {
+    Motion motion;
+    const glm::vec2 arrows(keys.arrowRight - keys.arrowLeft, keys.arrowUp - keys.arrowDown);
+    if (keys.control)
+        motion.look = degreesPerSecond * glm::vec2(-arrows.x, arrows.y);
+    else if (keys.shift) // a camera goes to where the arrow points, so that the scene goes the other way
+        motion.pan = viewsPerSecond * screen_.size.y * glm::vec2(arrows.x, -arrows.y) * (keys.light ? 1.0f : -1.0f);
+    else
+        motion.turn = degreesPerSecond * arrows;
+    motion.nearer = notchesPerSecond * (keys.nearer - keys.further);
+    if (!keys.control)
+        motion.fly = settings.flySpeed * sceneSize * (keys.shift ? sprint : 1.0f) *
+                     glm::vec3(keys.right - keys.left, keys.rise - keys.sink, keys.forward - keys.back);
+    return motion;
+}
+
+// A button went down in the view.
+void Viewport::grab(const Keys& keys) {
+    dragsLight_ = keys.light;
+    if (ImGui::IsMouseDown(ImGuiMouseButton_Right))
+        drag_ = Drag::Look;
+    else if (ImGui::IsMouseDown(ImGuiMouseButton_Middle))
+        drag_ = Drag::Pan;
+    else if (handle_ != LightHandle::None)
+        drag_ = Drag::Handle;
+    else
+        drag_ = keys.shift ? Drag::Pan : keys.control ? Drag::Zoom : Drag::Orbit;
+    if (drag_ == Drag::Look) dragsLight_ = false;
+}
+
+void Viewport::navigate(Session& session, const SceneFacts& facts, const Keys& keys, ViewSettings& settings) {
+    const ImGuiIO& io = ImGui::GetIO();
+    const bool dialog = ImGui::IsPopupOpen("", ImGuiPopupFlags_AnyPopupId | ImGuiPopupFlags_AnyPopupLevel);
+    const bool hovered = ImGui::IsItemHovered();
+    if (keys.handles && !dialog) settings.lightShown = !settings.lightShown;
+    lightDrawn_ = settings.lightShown || keys.light || (drag_ != Drag::None && dragsLight_);
+
+    const glm::vec2 pointer = vec(io.MousePos);
+    if (drag_ == Drag::None)
+        handle_ = hovered && lightDrawn_ ? handleAt(session.light, screen_, pointer, 0.55f * ImGui::GetFontSize())
+                                         : LightHandle::None;
+    const bool doubleClick = hovered && ImGui::IsMouseDoubleClicked(ImGuiMouseButton_Left);
+    if (doubleClick && handle_ == LightHandle::None) {
+        const glm::vec2 place = (pointer - screen_.corner) / screen_.size * glm::vec2(session.size);
+        point_ = {glm::ivec2(place), keys.light};
+    }
+    if (ImGui::IsItemActivated()) grab(keys);
     if (!ImGui::IsItemActive()) drag_ = Drag::None;
 
-    const float degrees = degreesPerUnit * 13 / std::max(ImGui::GetFontSize(), 1.0f);
-    const float x = io.MouseDelta.x, y = io.MouseDelta.y;
-    if (x != 0 || y != 0) switch (drag_) {
-        case Drag::None: break;
-        case Drag::Orbit: orbit(session.camera, -x * degrees, y * degrees); break;
-        case Drag::Pan: pan(session.camera, {x, y}, size.y); break;
-        case Drag::Fly: look(session.camera, -x * degrees, -y * degrees); break;
-        case Drag::Light: orbitLight(session.light, x * degrees, -y * degrees); break;
-        }
-    if (drag_ == Drag::Fly) {
-        const glm::vec3 direction(keys.right - keys.left, keys.up - keys.down, keys.forward - keys.back);
-        const float metres = flySpeed_ * facts.size * seconds * (keys.shift ? 4.0f : 1.0f);
-        if (direction != glm::vec3(0)) fly(session.camera, metres * glm::normalize(direction));
-        flySpeed_ = std::clamp(flySpeed_ * std::pow(1.25f, io.MouseWheel), 0.001f, 10.0f);
-    } else if (ImGui::IsItemHovered() && io.MouseWheel != 0) {
-        if (keys.light)
-            moveLightAway(session.light, io.MouseWheel, facts.size);
-        else
-            zoom(session.camera, io.MouseWheel, facts.size);
+    const glm::vec2 delta = vec(io.MouseDelta);
+    if (drag_ == Drag::Handle && delta != glm::vec2(0))
+        dragHandle(session.light, handle_, screen_, pointer - delta, pointer, keys.shift, facts.size);
+
+    const auto apply = [&](const Motion& motion, bool toLight) {
+        if (motion == Motion{}) return;
+        if (toLight) return move(session.light, session.camera, motion, screen_.size.y, facts.size);
+        move(session.camera, motion, screen_.size.y, facts.size);
+        if (motion.turn != glm::vec2(0)) targetUntil_ = ImGui::GetTime() + glimpse;
+    };
+    apply(ofMouse(), drag_ == Drag::None ? keys.light : dragsLight_);
+    if (drag_ == Drag::Look && io.MouseWheel != 0) {
+        settings.changeSpeed(io.MouseWheel);
+        speedUntil_ = ImGui::GetTime() + glimpse;
     }
-    if (keys.frameScene) frameBounds(session.camera, facts.boundsWorld, size.x / size.y);
-    if (drag_ == Drag::Fly && io.MouseWheel != 0)
-        ImGui::SetTooltip("%s", ShortText("{:.3g} m/s", flySpeed_ * facts.size).begin());
+    if (dialog) return;
+    apply(ofKeys(keys, settings, facts.size), keys.light);
+    if (keys.larger != keys.smaller)
+        scaleLight(session.light, glm::vec2(std::pow(sizePerSecond, keys.larger - keys.smaller)));
+    if (keys.fast != keys.slow) {
+        settings.changeSpeed(notchesPerSecond * (keys.fast - keys.slow));
+        speedUntil_ = ImGui::GetTime() + glimpse;
+    }
+    if (keys.frameScene) frameBounds(session.camera, facts.boundsWorld, screen_.size.x / screen_.size.y);
+    if (keys.reset && keys.light) session.light = defaultLight(*facts.scene, facts.pose);
+    if (keys.reset && !keys.light) session.camera = defaultCamera(*facts.scene, facts.pose);
+}
+
+// What a double click asked for, now that the picture is known to be that of the camera.
+void Viewport::takePoint(Session& session, const Renderer& renderer, float sceneSize) {
+    const Point point = *point_;
+    point_.reset();
+    const std::optional<glm::vec3> surface = renderer.surfaceAt(point.pixel);
+    if (!surface) return;
+    if (point.aimsLight) {
+        put(session.light.target, *surface, session.light.position, sceneSize);
+    } else {
+        put(session.camera.target, *surface, session.camera.eye, sceneSize);
+        targetUntil_ = ImGui::GetTime() + glimpse;
+    }
+    fingerprint(session, renderer);
 }
 
 // Equal fingerprints give equal pictures, but for history.
@@ -104,60 +259,85 @@ void Viewport::fingerprint(const Session& session, const Renderer& renderer) {
 
 void Viewport::render(Session& session, Renderer& renderer, Timing timing, bool always) {
     fingerprint(session, renderer);
-    const bool changed = now_ != drawn_ || restart_;
-    // A few frames more until the timer queries of the last change have come in, unless frames are dear.
-    const bool settling = frames_ < settledFrame_ && renderer.runner().timer().newest().milliseconds < dearFrame;
-    // After a failure only a change can help.
-    const bool living =
-        trouble_.empty() && (always || settling || session.timeStep != 0 || !renderer.flow().pasts().empty());
-    if (!changed && !living) return;
-    if (restart_) {
-        renderer.reset();
-        session.frame = 0;
-        restart_ = false;
-    }
-    if (changed) settledFrame_ = frames_ + framesToSettle;
-    drawn_ = now_;
-    trouble_.clear();
     try {
-        renderer.render(session, timing);
-        ++session.frame;
-        ++frames_;
-        renderedNow_ = true;
+        if (!renderer.underWay()) {
+            const bool changed = now_ != drawn_ || restart_;
+            // A few frames more until the timer queries of the last change have come in, unless frames are dear.
+            const bool settling =
+                frames_ < settledFrame_ && renderer.runner().timer().newest().milliseconds < dearFrame;
+            // After a failure only a change can help.
+            const bool living =
+                trouble_.empty() && (always || settling || session.timeStep != 0 || !renderer.flow().pasts().empty());
+            if (!changed && !living) return;
+            if (restart_) {
+                renderer.reset();
+                session.frame = 0;
+                restart_ = false;
+            }
+            if (changed) settledFrame_ = frames_ + framesToSettle;
+            drawn_ = now_;
+            trouble_.clear();
+            renderer.begin(session, timing);
+            ++session.frame;
+        }
+        renderedNow_ = renderer.advance(shareOfFrame);
+        if (renderedNow_) ++frames_;
     } catch (const std::exception& error) { // too large, or a shader that never compiled: only a change can help
         trouble_ = error.what();
     }
+    busy_ = renderer.underWay();
 }
 
-void Viewport::drawLight(const Session& session, ImVec2 corner, ImVec2 size) const {
-    const View view = makeView(session.camera, session.size, 0.1f, 1.0f);
+void Viewport::drawLight(const Session& session) const {
     const AreaLight& light = session.light;
     ImDrawList& list = *ImGui::GetWindowDrawList();
-    const ImU32 ink = ImGui::GetColorU32(colour::accent);
-    const auto line = [&](glm::vec3 fromWorld, glm::vec3 toWorld) {
-        const glm::vec4 a = view.clipFromWorld * glm::vec4(fromWorld, 1),
-                        b = view.clipFromWorld * glm::vec4(toWorld, 1);
-        if (a.w <= 0 || b.w <= 0) return; // behind the eye
-        const auto place = [&](glm::vec4 p) {
-            return ImVec2(corner.x + size.x * (0.5f + 0.5f * p.x / p.w), corner.y + size.y * (0.5f - 0.5f * p.y / p.w));
-        };
-        list.AddLine(place(a), place(b), ink, 0.12f * ImGui::GetFontSize());
+    const float em = ImGui::GetFontSize();
+    const ImU32 ink = ImGui::GetColorU32(colour::accent), bright = IM_COL32(255, 255, 255, 255);
+    const auto inkOf = [&](bool lit) { return lit ? bright : ink; };
+    list.PushClipRect(vec(screen_.corner), vec(screen_.corner + screen_.size), true);
+    const auto line = [&](glm::vec3 fromWorld, glm::vec3 toWorld, bool lit) {
+        if (const auto ends = screen_.project(fromWorld, toWorld)) inkLine(list, ends->first, ends->second, inkOf(lit));
     };
-    line(light.position, light.target);
-    if (light.shape == LightShape::Directional) return;
-    const glm::mat4 worldFromLight = glm::inverse(lightFromWorld(light));
-    const glm::vec2 half = halfSize(light);
-    const bool disk = light.shape == LightShape::Disk;
-    const int corners = disk ? 48 : 4;
-    const auto edge = [&](int i) {
-        const float angle = glm::radians(360.0f * (static_cast<float>(i) + 0.5f) / static_cast<float>(corners));
-        const float reach = disk ? 1.0f : std::sqrt(2.0f); // of the unit square's corners
-        return glm::vec3(worldFromLight * glm::vec4(half * reach * glm::vec2(std::cos(angle), std::sin(angle)), 0, 1));
-    };
-    for (int i = 0; i < corners; ++i) line(edge(i), edge(i + 1));
+    line(light.position, light.target, false);
+    const LightOutline outline = lightOutline(light);
+    for (size_t i = 0; i < outline.size(); ++i)
+        line(outline[i], outline[(i + 1) % outline.size()],
+             handle_ != LightHandle::None && handle_ == edgeAt(light, i));
+    if (const auto centre = screen_.project(light.position))
+        inkCircle(list, *centre, 0.32f * em, inkOf(handle_ == LightHandle::Centre), true);
+    if (const auto target = screen_.project(light.target)) {
+        const bool lit = handle_ == LightHandle::Target;
+        inkCircle(list, *target, 0.4f * em, inkOf(lit), false);
+        inkCircle(list, *target, 0.12f * em, inkOf(lit), true);
+    }
+    list.PopClipRect();
+    if (handle_ == LightHandle::None) return;
+    const bool held = drag_ == Drag::Handle;
+    ImGui::SetMouseCursor(handle_ == LightHandle::Width || handle_ == LightHandle::Height ? ImGuiMouseCursor_Hand
+                                                                                          : ImGuiMouseCursor_ResizeAll);
+    if (held || drag_ == Drag::None) ImGui::SetTooltip("%s", handleText(handle_, light, held).begin());
 }
 
-void Viewport::drawTroubles(const std::vector<std::string>& shaderErrors, ImVec2 corner, ImVec2 size) const {
+// What the camera turns round.
+void Viewport::drawTarget(const Session& session) const {
+    const auto target = screen_.project(session.camera.target);
+    if (!target) return;
+    ImDrawList& list = *ImGui::GetWindowDrawList();
+    const float em = ImGui::GetFontSize();
+    ImVec4 ink = colour::text;
+    ink.w = static_cast<float>(std::clamp(3 * (targetUntil_ - ImGui::GetTime()), 0.0, 1.0));
+    const ImU32 fading = ImGui::GetColorU32(ink);
+    list.AddCircle(vec(*target), 0.45f * em, fading, 0, 0.12f * em);
+    list.AddCircleFilled(vec(*target), 0.13f * em, fading);
+}
+
+void Viewport::drawSpeed(const ViewSettings& settings, float sceneSize) const {
+    drawHint(screen_.corner.x + screen_.size.x / 2, screen_.corner.y + ImGui::GetFontSize(),
+             ShortText("Flying at {:.3g} m/s", settings.flySpeed * sceneSize));
+}
+
+void Viewport::drawTroubles(const std::vector<std::string>& shaderErrors) const {
+    const glm::vec2 corner = screen_.corner, size = screen_.size;
     const float padding = 0.6f * ImGui::GetFontSize(), width = std::max(size.x - 4 * padding, 1.0f);
     float y = corner.y + padding;
     const auto banner = [&](const std::string& message) {

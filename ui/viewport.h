@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: MIT
-// The picture in the window: renders the session when there is something new to see and takes the mouse.
+// The picture in the window: renders the session when there is something new to see and takes mouse and keys.
 #pragma once
 
 #include "ui/keys.h"
+#include "ui/light_gizmo.h"
+#include "ui/navigation.h"
 #include "ui/scene_facts.h"
 #include "ui/widgets.h"
 
@@ -15,33 +17,53 @@ namespace penumbra {
 class Viewport {
 public:
     // Fills the current ImGui window: moves camera and light, renders if `always` or if the session changed since the
-    // last frame or the technique keeps history, and shows the result. `pixelsPerUnit` is the framebuffer's scale.
-    void draw(Session& session, Renderer& renderer, const SceneFacts& facts, const Keys& keys, Timing timing,
-              bool always, bool showLight, float seconds, float pixelsPerUnit);
+    // last frame or the technique keeps history, and shows the result. A dear frame takes several calls; the one before
+    // is shown meanwhile. `pixelsPerUnit` is the framebuffer's scale.
+    void draw(Session& session, Renderer& renderer, const SceneFacts& facts, const Keys& keys, ViewSettings& settings,
+              Timing timing, bool always, float pixelsPerUnit);
 
     // The next frame is the first: no history.
     void restart() { restart_ = true; }
     // A new scene: whatever is shown next has nothing to do with what was.
     void invalidate() { drawn_.clear(); }
 
-    uint64_t frames() const { return frames_; } // rendered so far
-    bool renderedNow() const { return renderedNow_; }
+    uint64_t frames() const { return frames_; }                // finished so far
+    bool renderedNow() const { return renderedNow_; }          // a frame was finished in this call
+    bool upToDate() const { return drawn_ == now_ && !busy_; } // the picture is what the session says
+    bool busy() const { return busy_; }                        // a frame is under way
 
 private:
-    enum class Drag { None, Orbit, Pan, Fly, Light };
+    enum class Drag { None, Orbit, Pan, Zoom, Look, Handle };
 
-    void navigate(Session& session, const SceneFacts& facts, const Keys& keys, float seconds, ImVec2 size);
+    void navigate(Session& session, const SceneFacts& facts, const Keys& keys, ViewSettings& settings);
+    Motion ofMouse() const;
+    Motion ofKeys(const Keys& keys, const ViewSettings& settings, float sceneSize) const;
+    void grab(const Keys& keys);
     void render(Session& session, Renderer& renderer, Timing timing, bool always);
-    void drawLight(const Session& session, ImVec2 corner, ImVec2 size) const;
-    void drawTroubles(const std::vector<std::string>& shaderErrors, ImVec2 corner, ImVec2 size) const;
+    void takePoint(Session& session, const Renderer& renderer, float sceneSize);
+    void drawLight(const Session& session) const;
+    void drawTarget(const Session& session) const;
+    void drawSpeed(const ViewSettings& settings, float sceneSize) const;
+    void drawTroubles(const std::vector<std::string>& shaderErrors) const;
     void fingerprint(const Session& session, const Renderer& renderer);
+    float unit() const; // of a drag: a pixel at 96 dots per inch [window units]
 
+    ScreenView screen_; // as the camera stood when the call began
     Drag drag_ = Drag::None;
-    float flySpeed_ = 0.2f; // scene sizes per second
+    bool dragsLight_ = false;                // instead of the camera
+    LightHandle handle_ = LightHandle::None; // under the pointer, or held
+    bool lightDrawn_ = false;
+    struct Point { // a double click: a pixel of the picture
+        glm::ivec2 pixel;
+        bool aimsLight;
+    };
+    std::optional<Point> point_;              // looked up as soon as the picture is what the session says
+    double targetUntil_ = 0, speedUntil_ = 0; // how long they are drawn; ImGui's time [s]
+
     bool restart_ = false;
-    std::vector<uint32_t> now_, drawn_; // what decides the picture, as words: of this frame, of the last one rendered
+    std::vector<uint32_t> now_, drawn_; // what decides the picture, as words: of this call, of the last frame begun
     uint64_t frames_ = 0, settledFrame_ = 0;
-    bool renderedNow_ = false;
+    bool renderedNow_ = false, busy_ = false;
     std::string trouble_; // why the last attempt to render failed
 };
 

@@ -16,6 +16,8 @@ constexpr float narrowWidth = 64;
 constexpr float lowestDrawer = 8;
 constexpr float firstTimings = 19, firstBuffers = 29;
 constexpr double step = 1.0 / 60;     // of time, by the step button [s]
+constexpr double smooth = 1.0 / 60;   // between two frames of a bar that fills [s]
+constexpr double idle = 0.1;          // between two frames of a window with nothing new to show [s]
 constexpr float longestFrame = 0.25f; // [s]; after a pause of the program time does not jump further
 
 bool beginFixed(const char* name, ImVec2 corner, ImVec2 size, ImGuiWindowFlags flags = 0) {
@@ -25,9 +27,9 @@ bool beginFixed(const char* name, ImVec2 corner, ImVec2 size, ImGuiWindowFlags f
 }
 
 // A dialog in the middle of the window, wide enough for prose but never wider than the window.
-bool beginDialog(const char* title) {
+bool beginDialog(const char* title, float widest = 36) { // font heights
     const ImVec2 screen = ImGui::GetIO().DisplaySize;
-    const float width = std::min(36 * ImGui::GetFontSize(), 0.95f * screen.x);
+    const float width = std::min(widest * ImGui::GetFontSize(), 0.95f * screen.x);
     ImGui::SetNextWindowSizeConstraints({width, 0}, {width, 0.95f * screen.y});
     ImGui::SetNextWindowPos({screen.x / 2, screen.y / 2}, ImGuiCond_Always, {0.5f, 0.5f});
     return ImGui::BeginPopupModal(
@@ -70,9 +72,11 @@ void Workspace::say(std::string message) {
     messageSeconds_ = 6;
 }
 
-bool Workspace::moving() const {
-    return viewport_.renderedNow() || loader_.progress() || playback_.playing || messageSeconds_ > 0 ||
-           windowPictureIn_ > 0 || !saving_.empty() || drawer_ == Drawer::Timings;
+double Workspace::patience() const {
+    if (viewport_.renderedNow() || viewport_.busy() || playback_.playing || windowPictureIn_ > 0 ||
+        drawer_ == Drawer::Timings)
+        return 0;
+    return loader_.progress() || messageSeconds_ > 0 || pictureWanted_ || !saving_.empty() ? smooth : idle;
 }
 
 Timing Workspace::timing() const {
@@ -82,7 +86,11 @@ Timing Workspace::timing() const {
 void Workspace::draw(const Keys& keys, float seconds, float pixelsPerUnit) {
     takeLoaded();
     strokes(keys);
-    advanceTime(std::min(seconds, longestFrame));
+    sinceAdvance_ += seconds;
+    if (!viewport_.busy()) { // a picture that is under way is of the time when it began
+        advanceTime(std::min(sinceAdvance_, longestFrame));
+        sinceAdvance_ = 0;
+    }
 
     const ImVec2 screen = ImGui::GetIO().DisplaySize;
     const float em = ImGui::GetFontSize();
@@ -102,14 +110,13 @@ void Workspace::draw(const Keys& keys, float seconds, float pixelsPerUnit) {
     bar({screen.x, barHeight});
     Requests requests;
     if (beginFixed("side", {left, barHeight}, {side, sideHeight}, ImGuiWindowFlags_AlwaysVerticalScrollbar))
-        requests = side_.draw(session_, facts_, playback_);
+        requests = side_.draw(session_, facts_, playback_, view_);
     ImGui::End();
 
     ImGui::PushStyleVar(ImGuiStyleVar_WindowPadding, ImVec2(0, 0));
     if (beginFixed("view", {0, barHeight}, {left, viewHeight},
                    ImGuiWindowFlags_NoScrollbar | ImGuiWindowFlags_NoScrollWithMouse)) {
-        viewport_.draw(session_, renderer_, facts_, keys, timing(), drawer_ == Drawer::Timings, side_.lightShown(),
-                       std::min(seconds, longestFrame), pixelsPerUnit);
+        viewport_.draw(session_, renderer_, facts_, keys, view_, timing(), drawer_ == Drawer::Timings, pixelsPerUnit);
         if (loader_.progress())
             loadingBar({0, barHeight + viewHeight}, left, keys.escape);
         else
@@ -129,7 +136,8 @@ void Workspace::draw(const Keys& keys, float seconds, float pixelsPerUnit) {
     }
     if (drawer_ != Drawer::Buffers) buffers_.close();
     carryOut(requests);
-    if (keys.picture) takePicture();
+    pictureWanted_ = pictureWanted_ || keys.picture;
+    if (pictureWanted_ && !viewport_.busy()) takePicture();
     if (keys.windowPicture) windowPictureIn_ = 2;
     collectSaved();
     dialogs(keys);
@@ -143,6 +151,7 @@ void Workspace::strokes(const Keys& keys) {
     if (keys.play) playback_.playing = !playback_.playing;
     if (keys.buffers) toggle(Drawer::Buffers);
     if (keys.timings) toggle(Drawer::Timings);
+    if (keys.next) say(keys.light ? side_.light().next(session_, facts_) : side_.camera().next(session_, facts_));
     if (keys.open) chooser_.open(facts_.scene->file.parent_path());
 }
 
@@ -164,7 +173,7 @@ void Workspace::bar(ImVec2 size) {
         if (ImGui::Button("Open…")) chooser_.open(facts_.scene->file.parent_path());
         tooltip("Ctrl+O");
         ImGui::SameLine();
-        if (ImGui::Button("Picture")) takePicture();
+        if (ImGui::Button("Picture")) pictureWanted_ = true;
         tooltip("Save what the view shows as a PNG (F12)");
         ImGui::SameLine(0, 1);
         pictureMenu();
@@ -303,13 +312,16 @@ void Workspace::loadingBar(ImVec2 corner, float width, bool cancel) {
     }
 }
 
+// Of what the session says, which the last picture may not yet show.
 void Workspace::takePicture() {
+    if (renderer_.hasFrame() && !viewport_.upToDate()) return;
+    pictureWanted_ = false;
     if (!renderer_.hasFrame()) return say("There is no picture to save yet");
     attempt([&] { saving_.push_back(actions_.savePicture(false)); });
 }
 
 void Workspace::drawn() {
-    if (windowPictureIn_ == 0) return;
+    if (windowPictureIn_ == 0 || (renderer_.hasFrame() && !viewport_.upToDate())) return;
     // The first frame closes menus and tooltips; no message shall lie over the view.
     messageSeconds_ = 0;
     if (--windowPictureIn_ == 0) attempt([&] { saving_.push_back(actions_.savePicture(true)); });
@@ -333,7 +345,7 @@ void Workspace::pictureMenu() {
     const ImVec2 button = ImGui::GetItemRectMin();
     ImGui::SetNextWindowPos({button.x, ImGui::GetItemRectMax().y + ImGui::GetStyle().FramePadding.y});
     if (!ImGui::BeginPopup("pictures")) return;
-    if (ImGui::MenuItem("The view", "F12")) takePicture();
+    if (ImGui::MenuItem("The view", "F12")) pictureWanted_ = true;
     if (ImGui::MenuItem("The whole window, with its panels", "Shift+F12")) windowPictureIn_ = 2;
     ImGui::Separator();
     text(colour::muted, "Into");
@@ -402,8 +414,10 @@ void Workspace::helpDialog(bool close) {
     constexpr const char* title = "Keys and mouse";
     if (openHelp_) ImGui::OpenPopup(title);
     openHelp_ = false;
-    if (!beginDialog(title)) return;
+    if (!beginDialog(title, 50)) return;
     if (ImGui::BeginTable("keys", 2, ImGuiTableFlags_SizingStretchProp)) {
+        ImGui::TableSetupColumn("keys", ImGuiTableColumnFlags_WidthStretch, 0.44f);
+        ImGui::TableSetupColumn("meaning", ImGuiTableColumnFlags_WidthStretch, 0.56f);
         for (const KeyHelp& help : keyHelp) {
             ImGui::TableNextRow();
             ImGui::TableNextColumn();
@@ -412,7 +426,7 @@ void Workspace::helpDialog(bool close) {
                 text(colour::muted, help.keys);
                 continue;
             }
-            text(help.keys);
+            wrappedText(help.keys);
             ImGui::TableNextColumn();
             wrappedText(help.meaning);
         }

@@ -48,8 +48,8 @@ public:
     // Loads it beside what is shown; a bad file shows a message and changes nothing.
     void openScene(SceneRequest request);
     void say(std::string message); // a line that fades
-    // Whether the next frame brings something new without any input.
-    bool moving() const;
+    // How long the next frame may wait for input [s]; 0 where it brings something new without any.
+    double patience() const;
 
 private:
     enum class Drawer { Closed, Buffers, Timings };
@@ -84,6 +84,7 @@ private:
     Actions actions_;
     SceneFacts facts_;
     Playback playback_;
+    ViewSettings view_;
     SidePanel side_;
     Viewport viewport_;
     BufferPanel buffers_;
@@ -102,6 +103,8 @@ private:
     bool openError_ = false, openHelp_ = false;
     std::string message_;
     float messageSeconds_ = 0; // how long it stays
+    float sinceAdvance_ = 0;   // since time was advanced [s]
+    bool pictureWanted_ = false;
 };
 
 } // namespace penumbra

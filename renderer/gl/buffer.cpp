@@ -53,13 +53,17 @@ void UniformRing::beginFrame(size_t bytesNeeded) {
     }
 }
 
-void UniformRing::bind(GLuint binding, const void* data, size_t bytes) {
+size_t UniformRing::put(const void* data, size_t bytes) {
     ensure(used_ + bytes <= bytesPerTurn_, "more uniforms than the frame asked for");
     const size_t offset = turn_ * bytesPerTurn_ + used_;
     std::memcpy(mapped_ + offset, data, bytes);
+    used_ += aligned(bytes);
+    return offset;
+}
+
+void UniformRing::bind(GLuint binding, size_t offset, size_t bytes) const {
     glBindBufferRange(GL_UNIFORM_BUFFER, binding, buffer_.name(), static_cast<GLintptr>(offset),
                       static_cast<GLsizeiptr>(aligned(bytes)));
-    used_ += aligned(bytes);
 }
 
 void UniformRing::endFrame() { fences_[turn_] = glFenceSync(GL_SYNC_GPU_COMMANDS_COMPLETE, 0); }

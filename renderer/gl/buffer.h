@@ -30,8 +30,9 @@ class UniformRing {
 public:
     ~UniformRing();
     void beginFrame(size_t bytesNeeded); // waits only if the GPU is three frames behind; grows the buffer if need be
-    // Copies the bytes and binds them to a uniform block binding.
-    void bind(GLuint binding, const void* data, size_t bytes);
+    // Copies the bytes of a uniform block; where they are, for bind(), until the frame's end.
+    size_t put(const void* data, size_t bytes);
+    void bind(GLuint binding, size_t offset, size_t bytes) const;
     void endFrame();
     static size_t aligned(size_t bytes) { return (bytes + 255) / 256 * 256; } // GL's largest permitted alignment
 

@@ -7,11 +7,33 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
+#include <limits>
+#include <utility>
 
 namespace penumbra {
 namespace {
 
 constexpr int groupSize = 8; // compute shaders work in groups of 8x8
+
+constexpr double dearFrame = 16;       // [ms]; a frame that took less goes at one go
+constexpr size_t firstBandShare = 128; // of a pass whose pace is not known, and
+constexpr size_t fewestFirst = 16;     // at least so many groups
+constexpr size_t bandGrowth = 4;
+
+constexpr double forever = std::numeric_limits<double>::infinity();
+
+struct Groups {
+    size_t width, height, layers;
+    explicit Groups(const Extent& extent)
+        : width(static_cast<size_t>((extent.width + groupSize - 1) / groupSize))
+        , height(static_cast<size_t>((extent.height + groupSize - 1) / groupSize))
+        , layers(static_cast<size_t>(extent.layers)) {}
+    size_t count() const { return width * height * layers; }
+};
+size_t groupsOf(const Flow& flow, const Flow::PassNode& pass) {
+    return std::holds_alternative<Compute>(pass.work) ? Groups(flow.spec(pass.writes[0]).extent).count() : 1;
+}
 
 const Defines& definesOf(const Work& work) {
     return std::visit([](const auto& w) -> const Defines& { return w.defines; }, work);
@@ -30,6 +52,10 @@ FlowRunner::FlowRunner(ProgramLibrary& programs) : programs_(programs) {
     glObjectLabel(GL_FRAMEBUFFER, name, -1, "draw passes");
 }
 
+FlowRunner::~FlowRunner() {
+    if (fence_) glDeleteSync(fence_);
+}
+
 int FlowRunner::turnOf(const Flow::ImageNode& node) const {
     if (node.repeat > 0) return (node.repeat - 1) % 2;
     return node.kept ? static_cast<int>(frame_ % 2) : 0;
@@ -45,11 +71,11 @@ void FlowRunner::allocate(const Flow& flow, int label, int turn, const ImageSpec
     Slot* slot = const_cast<Slot*>(find(label, turn));
     if (slot && slot->spec.sameStorage(spec)) {
         slot->lastUsed = frame_;
-        if (clear) slot->texture.clear();
+        if (clear) slot->texture->clear();
         return;
     }
-    Texture texture(flow.label(label), spec.format, spec.extent);
-    if (clear) texture.clear();
+    auto texture = std::make_shared<Texture>(flow.label(label), spec.format, spec.extent);
+    if (clear) texture->clear();
     if (slot) {
         slot->spec = spec;
         slot->texture = std::move(texture);
@@ -59,18 +85,24 @@ void FlowRunner::allocate(const Flow& flow, int label, int turn, const ImageSpec
     }
 }
 
-const Texture& FlowRunner::texture(const Flow& flow, Image image) const {
+const FlowRunner::Slot& FlowRunner::slotOf(const Flow& flow, Image image) const {
     const Flow::ImageNode& node = flow.node(image);
     const Slot* slot = find(node.label, turnOf(node));
     ensure(slot, "an image was asked for that no pass has written");
-    return slot->texture;
+    return *slot;
+}
+
+const Texture& FlowRunner::texture(const Flow& flow, Image image) const { return *slotOf(flow, image).texture; }
+
+std::shared_ptr<const Texture> FlowRunner::share(const Flow& flow, Image image) const {
+    return slotOf(flow, image).texture;
 }
 
 const Texture& FlowRunner::texture(const Flow& flow, PastImage image) const {
     const Flow::PastNode& node = flow.pasts()[static_cast<size_t>(image.index())];
     const Slot* slot = find(node.label, static_cast<int>((frame_ + 1) % 2));
     ensure(slot, "a past image was asked for that was not allocated");
-    return slot->texture;
+    return *slot->texture;
 }
 
 const Program& FlowRunner::program(const Flow::PassNode& pass, const char* variant) {
@@ -98,14 +130,11 @@ void FlowRunner::bindReads(const Flow& flow, const Flow::PassNode& pass, const P
         glBindTextureUnit(sampler.unit, texture.name());
         glBindSampler(sampler.unit, samplers_.get(read->sampling));
     }
-    if (pass.constants.size()) uniforms_.bind(0, pass.constants.data(), pass.constants.size());
-    if (!pass.parameterBlock.empty())
-        uniforms_.bind(1, pass.parameterBlock.data(), pass.parameterBlock.size() * sizeof(uint32_t));
+    if (pass.constants.size()) uniforms_.bind(0, at_.constants, pass.constants.size());
+    if (!pass.parameterBlock.empty()) uniforms_.bind(1, at_.parameters, pass.parameterBlock.size() * sizeof(uint32_t));
 }
 
-void FlowRunner::runCompute(const Flow& flow, const Flow::PassNode& pass) {
-    const Program& program = this->program(pass);
-    bindReads(flow, pass, program);
+void FlowRunner::bindWrites(const Flow& flow, const Flow::PassNode& pass, const Program& program) {
     for (const Program::Binding& image : program.images()) {
         const auto written = std::find_if(pass.writes.begin(), pass.writes.end(),
                                           [&](Image w) { return camelCase(flow.spec(w).name) == image.name; });
@@ -114,13 +143,32 @@ void FlowRunner::runCompute(const Flow& flow, const Flow::PassNode& pass) {
         glBindImageTexture(image.unit, texture.name(), 0, GL_TRUE, 0, GL_READ_WRITE,
                            glFormat(texture.format()).internal);
     }
-    const Extent& extent = flow.spec(pass.writes[0]).extent;
+}
+
+// At most so many groups more of a compute pass: all, some rows of a layer or a part of a row.
+void FlowRunner::dispatch(const Flow& flow, const Flow::PassNode& pass, size_t groups) {
+    const Program& program = *chosen_[at_.pass].plain;
+    bindReads(flow, pass, program);
+    bindWrites(flow, pass, program);
+    const Groups all(flow.spec(pass.writes[0]).extent);
+    const size_t x = at_.groups % all.width, y = at_.groups / all.width % all.height,
+                 layer = at_.groups / (all.width * all.height);
+    Groups band = all;
+    if (at_.groups > 0 || groups < all.count()) {
+        band.width = x > 0 || groups < all.width ? std::min(groups, all.width - x) : all.width;
+        band.height = std::clamp<size_t>(band.width < all.width ? 1 : groups / all.width, 1, all.height - y);
+        band.layers = 1;
+    }
     glUseProgram(program.name());
-    glDispatchCompute(static_cast<GLuint>((extent.width + groupSize - 1) / groupSize),
-                      static_cast<GLuint>((extent.height + groupSize - 1) / groupSize),
-                      static_cast<GLuint>(extent.layers));
+    if (program.bandOrigin() >= 0)
+        glUniform3ui(program.bandOrigin(), static_cast<GLuint>(x) * groupSize, static_cast<GLuint>(y) * groupSize,
+                     static_cast<GLuint>(layer));
+    glDispatchCompute(static_cast<GLuint>(band.width), static_cast<GLuint>(band.height),
+                      static_cast<GLuint>(band.layers));
     glMemoryBarrier(GL_TEXTURE_FETCH_BARRIER_BIT | GL_SHADER_IMAGE_ACCESS_BARRIER_BIT | GL_TEXTURE_UPDATE_BARRIER_BIT |
                     GL_FRAMEBUFFER_BARRIER_BIT);
+    at_.lastGroups = band.count();
+    at_.groups += at_.lastGroups;
 }
 
 void FlowRunner::runDraw(const Flow& flow, const Flow::PassNode& pass, const Draw& draw) {
@@ -165,9 +213,9 @@ void FlowRunner::runDraw(const Flow& flow, const Flow::PassNode& pass, const Dra
         set(GL_SCISSOR_TEST, draw.border > 0);
         glScissor(draw.border, draw.border, std::max(extent.width - 2 * draw.border, 0),
                   std::max(extent.height - 2 * draw.border, 0));
-        bindReads(flow, pass, program(pass));
-        draw.geometry->draw(
-            draw, {program(pass), program(pass, draw.textured ? "TEXTURED" : nullptr), program(pass, "MASKED")});
+        const Programs& programs = chosen_[at_.pass];
+        bindReads(flow, pass, *programs.plain);
+        draw.geometry->draw(draw, {*programs.plain, *programs.textured, *programs.masked});
     }
     glBindFramebuffer(GL_DRAW_FRAMEBUFFER, 0);
     set(GL_SCISSOR_TEST, false);
@@ -176,15 +224,27 @@ void FlowRunner::runDraw(const Flow& flow, const Flow::PassNode& pass, const Dra
     set(GL_DEPTH_TEST, false);
 }
 
-void FlowRunner::run(const Flow& flow, Timing timing) {
+FlowRunner::Pace& FlowRunner::paceOf(const Flow& flow, const Flow::PassNode& pass) {
+    const Compute& work = std::get<Compute>(pass.work);
+    const Extent& extent = flow.spec(pass.writes[0]).extent;
+    auto pace = std::find_if(paces_.begin(), paces_.end(), [&](const Pace& p) {
+        return p.label == pass.label && p.work == work && p.extent == extent && p.parameters == pass.parameterBlock;
+    });
+    if (pace == paces_.end()) pace = paces_.insert(pace, {pass.label, work, extent, pass.parameterBlock, -1, frame_});
+    pace->lastUsed = frame_;
+    return *pace;
+}
+
+void FlowRunner::begin(const Flow& flow, Timing timing) {
+    giveUp();
     ++frame_;
     size_t uniformBytes = 0;
+    chosen_.clear();
     for (const Flow::PassNode& pass : flow.passes()) {
-        program(pass);
-        if (const Draw* draw = std::get_if<Draw>(&pass.work)) {
-            program(pass, "MASKED");
-            if (draw->textured) program(pass, "TEXTURED");
-        }
+        const Draw* draw = std::get_if<Draw>(&pass.work);
+        const Program* plain = &program(pass);
+        chosen_.push_back({plain, draw && draw->textured ? &program(pass, "TEXTURED") : plain,
+                           draw ? &program(pass, "MASKED") : plain});
         uniformBytes += UniformRing::aligned(pass.constants.size()) +
                         UniformRing::aligned(pass.parameterBlock.size() * sizeof(uint32_t));
     }
@@ -192,22 +252,101 @@ void FlowRunner::run(const Flow& flow, Timing timing) {
     for (const Flow::PastNode& node : flow.pasts())
         allocate(flow, node.label, static_cast<int>((frame_ + 1) % 2), node.spec, !node.valid);
 
+    careful_ = std::max(milliseconds_, timer_.newest().milliseconds) > dearFrame;
+    for (const Flow::PassNode& pass : flow.passes())
+        if (std::holds_alternative<Compute>(pass.work) && paceOf(flow, pass).milliseconds < 0) careful_ = true;
+    at_ = {};
+    milliseconds_ = 0;
+    underWay_ = true;
     uniforms_.beginFrame(uniformBytes);
     timer_.beginFrame(timing);
-    for (const Flow::PassNode& pass : flow.passes()) {
-        const DebugGroup group(flow.label(pass.label));
-        if (const Draw* draw = std::get_if<Draw>(&pass.work))
-            runDraw(flow, pass, *draw);
-        else if (const PoseVertices* pose = std::get_if<PoseVertices>(&pass.work))
-            pose->geometry->pose(program(pass));
-        else
-            runCompute(flow, pass);
-        timer_.endPass(pass.stage, pass.label);
+}
+
+void FlowRunner::giveUp() {
+    if (underWay_) uniforms_.endFrame();
+    if (fence_) glDeleteSync(std::exchange(fence_, nullptr));
+    underWay_ = false;
+}
+
+// Whether the band that is under way is done; waits for it no longer than so many milliseconds.
+bool FlowRunner::settled(double milliseconds) {
+    if (!fence_) return true;
+    const double nanoseconds = std::clamp(milliseconds, 0.0, 1e9) * 1e6;
+    GLenum state = GL_TIMEOUT_EXPIRED;
+    do {
+        state = glClientWaitSync(fence_, GL_SYNC_FLUSH_COMMANDS_BIT, static_cast<GLuint64>(nanoseconds));
+    } while (state == GL_TIMEOUT_EXPIRED && milliseconds == forever);
+    if (state == GL_TIMEOUT_EXPIRED) return false;
+    glDeleteSync(std::exchange(fence_, nullptr));
+    at_.lastMilliseconds = std::chrono::duration<double, std::milli>(Clock::now() - bandStart_).count();
+    at_.milliseconds += at_.lastMilliseconds;
+    milliseconds_ += at_.lastMilliseconds;
+    return true;
+}
+
+// How many groups of the pass under way should fit into the time.
+size_t FlowRunner::nextBand(size_t all, double millisecondsLeft) const {
+    const double mean = at_.pace->milliseconds;
+    if (at_.groups == 0 && mean < 0) return std::max(fewestFirst, all / firstBandShare);
+    const double last = at_.groups == 0 ? 0 : at_.lastMilliseconds / static_cast<double>(at_.lastGroups);
+    const double fitting = std::max(millisecondsLeft, 0.0) / std::max({mean, last, 1e-9});
+    const size_t groups = fitting < static_cast<double>(all) ? static_cast<size_t>(fitting) : all;
+    return std::clamp<size_t>(mean < 0 ? std::min(groups, bandGrowth * at_.groups) : groups, 1, all);
+}
+
+// A whole pass or, in as many milliseconds, a band of it; a shader that does not know where a band begins runs whole.
+void FlowRunner::runPart(const Flow& flow, std::optional<double> millisecondsLeft) {
+    const Flow::PassNode& pass = flow.passes()[at_.pass];
+    const DebugGroup group(flow.label(pass.label));
+    if (at_.groups == 0) {
+        at_.constants = uniforms_.put(pass.constants.data(), pass.constants.size());
+        at_.parameters = uniforms_.put(pass.parameterBlock.data(), pass.parameterBlock.size() * sizeof(uint32_t));
     }
+    if (millisecondsLeft) timer_.resume();
+    bandStart_ = Clock::now();
+    if (const Draw* draw = std::get_if<Draw>(&pass.work)) {
+        runDraw(flow, pass, *draw);
+        at_.groups = 1;
+    } else if (const PoseVertices* poseVertices = std::get_if<PoseVertices>(&pass.work)) {
+        poseVertices->geometry->pose(*chosen_[at_.pass].plain);
+        at_.groups = 1;
+    } else {
+        const size_t all = groupsOf(flow, pass);
+        if (at_.groups == 0) at_.pace = &paceOf(flow, pass);
+        const bool divisible = chosen_[at_.pass].plain->bandOrigin() >= 0;
+        dispatch(flow, pass, millisecondsLeft && divisible ? nextBand(all, *millisecondsLeft) : all);
+    }
+    timer_.endPass(pass.stage, pass.label);
+    if (millisecondsLeft) fence_ = glFenceSync(GL_SYNC_GPU_COMMANDS_COMPLETE, 0);
+}
+
+bool FlowRunner::step(const Flow& flow, double milliseconds) {
+    ensure(underWay_, "a step of no frame");
+    const bool bands = careful_ && std::isfinite(milliseconds);
+    const Clock::time_point start = Clock::now();
+    const auto spent = [&] { return std::chrono::duration<double, std::milli>(Clock::now() - start).count(); };
+    constexpr double mostlySpent = 0.8; // what is left then is too little for a band
+    for (bool begun = false; settled(bands ? milliseconds - spent() : forever); begun = true) {
+        if (at_.pass < flow.passes().size() && at_.groups == groupsOf(flow, flow.passes()[at_.pass])) {
+            if (at_.pace && bands) at_.pace->milliseconds = at_.milliseconds / static_cast<double>(at_.groups);
+            at_ = {.pass = at_.pass + 1};
+        }
+        underWay_ = at_.pass < flow.passes().size();
+        if (!underWay_ || (begun && bands && spent() > mostlySpent * milliseconds)) break;
+        runPart(flow, bands ? std::optional(milliseconds - spent()) : std::nullopt);
+    }
+    for (GLuint unit = 0; unit < 16; ++unit) glBindSampler(unit, 0);
+    if (underWay_) return false;
     timer_.endFrame();
     uniforms_.endFrame();
-    for (GLuint unit = 0; unit < 16; ++unit) glBindSampler(unit, 0);
     std::erase_if(slots_, [&](const std::unique_ptr<Slot>& slot) { return slot->lastUsed != frame_; });
+    std::erase_if(paces_, [&](const Pace& pace) { return pace.lastUsed != frame_; });
+    return true;
+}
+
+void FlowRunner::run(const Flow& flow, Timing timing) {
+    begin(flow, timing);
+    step(flow, forever);
 }
 
 } // namespace penumbra

@@ -178,7 +178,10 @@ void ProgramLibrary::build(Entry& entry) const {
         if (values[2] != -1 || values[1] < 0) continue; // in a block
         char uniform[128] = {};
         glGetProgramResourceName(name, GL_UNIFORM, i, sizeof(uniform), nullptr, uniform);
-        found.push_back({uniform, values[1], isImage(static_cast<GLenum>(values[0]))});
+        if (uniform == bandOriginUniform)
+            program.bandOrigin_ = values[1];
+        else
+            found.push_back({uniform, values[1], isImage(static_cast<GLenum>(values[0]))});
     }
     std::sort(found.begin(), found.end(), [](const Uniform& a, const Uniform& b) {
         return std::tuple(a.name == materialSampler, a.name) < std::tuple(b.name == materialSampler, b.name);

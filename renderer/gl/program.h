@@ -19,6 +19,9 @@ enum class ProgramKind { Compute, Raster }; // Raster: one file with VERTEX_SHAD
 // The sampler of a material's texture, which the geometry binds and not the pass.
 inline constexpr std::string_view materialSampler = "baseColourTexture";
 
+// The uniform of shaders/band.glsl.
+inline constexpr std::string_view bandOriginUniform = "bandOrigin";
+
 // A linked program and where its samplers and images are bound: units 0, 1, 2 ... by name, the material's texture last,
 // so that the variants of a pass agree.
 class Program {
@@ -30,6 +33,8 @@ public:
     GLuint name() const { return handle_.get(); }
     const std::vector<Binding>& samplers() const { return samplers_; }
     const std::vector<Binding>& images() const { return images_; }
+    // Of the uniform that says where a band of a compute pass begins, see shaders/band.glsl; −1: it has none.
+    GLint bandOrigin() const { return bandOrigin_; }
     // Whether the source text says this word: a read that no variant of the shader could use is a mistake.
     bool mentions(std::string_view word) const;
 
@@ -38,6 +43,7 @@ private:
     static void destroy(GLuint name) { glDeleteProgram(name); }
     Handle<destroy> handle_;
     std::vector<Binding> samplers_, images_;
+    GLint bandOrigin_ = -1;
     std::string source_;
 };
 

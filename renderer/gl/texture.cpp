@@ -76,6 +76,14 @@ std::vector<float> Texture::read(int layer, int level) const {
     return values;
 }
 
+float Texture::readTexel(int x, int y) const {
+    ensure(extent_.samples == 1, "an image of several samples cannot be read back");
+    float values[4] = {};
+    const GlFormat gl = glFormat(format_);
+    glGetTextureSubImage(name(), 0, x, y, 0, 1, 1, 1, gl.layout, gl.type, sizeof(values), values);
+    return values[0];
+}
+
 Samplers::Samplers() {
     static constexpr std::string_view labels[] = {"nearest", "linear", "linear mipmap", "compare"};
     for (size_t i = 0; i < std::size(handles_); ++i) {

@@ -31,6 +31,8 @@ public:
     Texture copy(std::string_view label) const;
     // All texels of a layer and level as floats, `channels` a texel, row 0 first as OpenGL has it. Stalls.
     std::vector<float> read(int layer = 0, int level = 0) const;
+    // The first channel of one texel, (0, 0) being the first of the first row. Stalls too.
+    float readTexel(int x, int y) const;
 
 private:
     static void destroy(GLuint name) { glDeleteTextures(1, &name); }

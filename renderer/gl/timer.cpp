@@ -29,12 +29,17 @@ void PassTimer::collect(Round& round) {
     GLuint64 first = 0, before = 0, now = 0;
     glGetQueryObjectui64v(round.queries[0], GL_QUERY_RESULT, &first);
     before = first;
+    double elsewhere = 0;
     for (size_t i = 0; i < round.marks.size(); ++i) {
         glGetQueryObjectui64v(round.queries[i + 1], GL_QUERY_RESULT, &now);
-        add(round.marks[i].stage, round.marks[i].label, static_cast<double>(now - before) * 1e-6);
+        const double ms = static_cast<double>(now - before) * 1e-6;
+        if (round.marks[i].label < 0)
+            elsewhere += ms;
+        else
+            add(round.marks[i].stage, round.marks[i].label, ms);
         before = now;
     }
-    newest_.milliseconds = static_cast<double>(before - first) * 1e-6;
+    newest_.milliseconds = static_cast<double>(before - first) * 1e-6 - elsewhere;
     newest_.number = round.frame;
     round.pending = false;
 }
@@ -61,6 +66,19 @@ void PassTimer::beginFrame(Timing timing) {
         glFinish();
         newest_.passes.clear();
         frameStart_ = passStart_ = Clock::now();
+        elsewhere_ = {};
+    }
+}
+
+void PassTimer::resume() {
+    if (timing_ == Timing::Queries) {
+        Round& round = rounds_[round_];
+        round.marks.push_back({Stage::Scene, -1});
+        stamp(round, round.marks.size());
+    } else if (timing_ == Timing::Finish) {
+        const Clock::time_point now = Clock::now();
+        elsewhere_ += now - passStart_;
+        passStart_ = now;
     }
 }
 
@@ -87,7 +105,7 @@ void PassTimer::endPass(Stage stage, int label) {
 void PassTimer::endFrame() {
     if (timing_ == Timing::Queries) rounds_[round_].pending = true;
     if (timing_ == Timing::Finish) {
-        newest_.milliseconds = milliseconds(Clock::now() - frameStart_);
+        newest_.milliseconds = milliseconds(Clock::now() - frameStart_ - elsewhere_);
         newest_.number = frame_;
     }
 }

@@ -27,13 +27,16 @@ struct PassTime {
 // Times that have come in.
 struct TimedFrame {
     uint64_t number = 0;            // from 1 on; 0: none yet
-    double milliseconds = 0;        // from the first pass to the end of the last one
+    double milliseconds = 0;        // from the first pass to the end of the last one, without what was somebody else's
     std::vector<PassTime> passes{}; // in their order; those of one label are summed
 };
 
 class PassTimer {
 public:
     void beginFrame(Timing timing);
+    // What has passed since the last call was somebody else's: the next pass, or more of the same, begins now.
+    void resume();
+    // Once or more a pass, for the work since the last call.
     void endPass(Stage stage, int label);
     void endFrame();
     // Takes in what timer queries have come in since; never stalls. beginFrame does so too.
@@ -48,9 +51,9 @@ private:
     using Clock = std::chrono::steady_clock;
     struct Mark {
         Stage stage;
-        int label;
+        int label; // −1: somebody else's time
     };
-    // Timestamps of one frame under way: query 0 before the first pass, query i + 1 behind pass i.
+    // Timestamps of one frame under way: query 0 before the first pass, query i + 1 behind what mark i tells of.
     struct Round {
         std::vector<GLuint> queries;
         std::vector<Mark> marks;
@@ -69,6 +72,7 @@ private:
     std::array<Round, 4> rounds_{};
     size_t round_ = 0;
     Clock::time_point frameStart_, passStart_;
+    Clock::duration elsewhere_{};
     TimedFrame newest_;
 };
 

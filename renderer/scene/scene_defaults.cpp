@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <optional>
+#include <utility>
 #include <vector>
 
 namespace penumbra {
@@ -25,12 +27,13 @@ glm::vec3 unitOr(const glm::vec3& v, const glm::vec3& otherwise) {
 
 glm::vec3 forwardOf(const glm::mat4& worldFromNode) { return unitOr(-glm::vec3(worldFromNode[2]), {0, 0, -1}); }
 
-// How far along the ray its last point inside the bounds is; if it misses them, how far the centre is along it.
-float reach(const Bounds& bounds, const glm::vec3& origin, const glm::vec3& direction) {
+// Where a ray enters and leaves the bounds, from its origin on, in lengths of the direction.
+std::optional<std::pair<float, float>> passage(const Bounds& bounds, const glm::vec3& origin,
+                                               const glm::vec3& direction) {
     float enter = 0, leave = std::numeric_limits<float>::max();
     for (int axis = 0; axis < 3; ++axis) {
         if (direction[axis] == 0) {
-            if (origin[axis] < bounds.min[axis] || origin[axis] > bounds.max[axis]) leave = -1;
+            if (origin[axis] < bounds.min[axis] || origin[axis] > bounds.max[axis]) return std::nullopt;
             continue;
         }
         const float a = (bounds.min[axis] - origin[axis]) / direction[axis];
@@ -38,16 +41,62 @@ float reach(const Bounds& bounds, const glm::vec3& origin, const glm::vec3& dire
         enter = std::max(enter, std::min(a, b));
         leave = std::min(leave, std::max(a, b));
     }
+    if (leave < enter) return std::nullopt;
+    return std::pair(enter, leave);
+}
+
+// How far along the ray its last point inside the bounds is; if it misses them, how far the centre is along it.
+float reach(const Bounds& bounds, const glm::vec3& origin, const glm::vec3& direction) {
     const float diagonal = bounds.diagonal();
-    if (leave >= enter && leave > 1e-3f * diagonal) return leave;
+    if (const auto inside = passage(bounds, origin, direction); inside && inside->second > 1e-3f * diagonal)
+        return inside->second;
     const float toCentre = glm::dot(bounds.centre() - origin, direction);
     return toCentre > 1e-3f * diagonal ? toCentre : 0.5f * diagonal;
 }
 
-// How far the centre is along the line of sight; a camera turns about that point.
-float sightDistance(const Bounds& bounds, const glm::vec3& origin, const glm::vec3& direction) {
+// How far along the ray a triangle is (Möller and Trumbore, Fast, Minimum Storage Ray/Triangle Intersection, 1997).
+std::optional<float> triangleDistance(const glm::vec3& origin, const glm::vec3& direction, const glm::vec3& a,
+                                      const glm::vec3& b, const glm::vec3& c) {
+    const glm::vec3 ab = b - a, ac = c - a, p = glm::cross(direction, ac), from = origin - a;
+    const float determinant = glm::dot(ab, p);
+    if (determinant == 0) return std::nullopt;
+    const glm::vec3 q = glm::cross(from, ab);
+    const float u = glm::dot(from, p) / determinant, v = glm::dot(direction, q) / determinant;
+    if (!(u >= 0 && v >= 0 && u + v <= 1)) return std::nullopt;
+    return glm::dot(ac, q) / determinant;
+}
+
+// How far along the ray the scene's nearest surface is, beyond `nearest`.
+std::optional<float> surfaceDistance(const Scene& scene, const Pose& pose, const glm::vec3& origin,
+                                     const glm::vec3& direction, float nearest) {
+    std::optional<float> found;
+    std::vector<glm::vec3> positionsWorld;
+    for (size_t n = 0; n < scene.nodes.size(); ++n) {
+        const Node& node = scene.nodes[n];
+        if (!node.visible || node.mesh < 0) continue;
+        for (const Primitive& primitive : scene.meshes[size_t(node.mesh)].primitives) {
+            const auto inside = passage(posedBounds(scene, pose, n, primitive), origin, direction);
+            if (!inside || (found && inside->first > *found)) continue;
+            posedPositions(scene, pose, n, primitive, positionsWorld);
+            const uint32_t* corner = scene.indices.data() + primitive.firstIndex;
+            for (const uint32_t* last = corner + primitive.indexCount; corner < last; corner += 3) {
+                const auto distance = triangleDistance(origin, direction, positionsWorld[corner[0]],
+                                                       positionsWorld[corner[1]], positionsWorld[corner[2]]);
+                if (distance && *distance > nearest && (!found || *distance < *found)) found = distance;
+            }
+        }
+    }
+    return found;
+}
+
+// How far away the point is that a camera turns about: the surface in the middle of its picture, or where there is
+// none the depth of the scene's centre.
+float sightDistance(const Scene& scene, const Pose& pose, const Bounds& bounds, const glm::vec3& origin,
+                    const glm::vec3& direction) {
+    const float diagonal = bounds.diagonal();
+    if (const auto surface = surfaceDistance(scene, pose, origin, direction, 1e-3f * diagonal)) return *surface;
     const float distance = glm::dot(bounds.centre() - origin, direction);
-    return distance > 0.05f * bounds.diagonal() ? distance : 0.25f * bounds.diagonal();
+    return distance > 0.05f * diagonal ? distance : 0.25f * diagonal;
 }
 
 } // namespace
@@ -72,7 +121,7 @@ Camera sceneCamera(const Scene& scene, const Pose& pose, const NamedCamera& name
         camera.eye = camera.target - forward * distance;
         return camera;
     }
-    camera.target = camera.eye + forward * sightDistance(bounds, camera.eye, forward);
+    camera.target = camera.eye + forward * sightDistance(scene, pose, bounds, camera.eye, forward);
     return camera;
 }
 

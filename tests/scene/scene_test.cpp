@@ -213,9 +213,14 @@ TEST_CASE("a scene's camera is taken as it stands") {
     scene.cameras.push_back({.name = "front", .node = 1, .fovY = 60});
     Camera camera = defaultCamera(scene, poseAt(scene, 0));
     CHECK(camera.eye == glm::vec3(0, 0, 5));
-    CHECK(glm::distance(camera.target, glm::vec3(0)) < 1e-5f);
+    CHECK(glm::distance(camera.target, glm::vec3(0, 0, 1)) < 1e-5f); // turns about the surface that it looks at
     CHECK(camera.up == glm::vec3(0, 1, 0));
     CHECK(camera.fovY == 60);
+
+    scene.nodes[1].translation = {0, 3, 5}; // looks over the box: about the depth of the scene's centre
+    camera = defaultCamera(scene, poseAt(scene, 0));
+    CHECK(glm::distance(camera.target, glm::vec3(0, 3, 0)) < 1e-5f);
+    scene.nodes[1].translation = {0, 0, 5};
 
     scene.nodes[1].rotation = glm::angleAxis(glm::radians(30.0f), glm::vec3(0, 0, 1));
     camera = defaultCamera(scene, poseAt(scene, 0));

@@ -4,6 +4,10 @@
 #include "tests/catch.h"
 #include "tests/support/scenes.h"
 
+#include <chrono>
+#include <cstring>
+#include <thread>
+
 using namespace penumbra;
 using namespace penumbra::test;
 
@@ -36,10 +40,41 @@ struct Sums {
         flow.begin();
         const PastImage past = flow.past(scope, sum(side));
         const Image image = add(scope, value, side, Read{"before", past});
-        runner.run(flow, Timing::Off);
+        run();
         return valueOf(image);
     }
+    bool inSteps = false; // as small as they get
+    void run() {
+        if (!inSteps) return runner.run(flow, Timing::Off);
+        runner.begin(flow, Timing::Off);
+        while (!runner.step(flow, 0)) {
+        }
+    }
 };
+
+Session demo(std::string_view technique) {
+    Session s = session(SceneBuilder().floor(3).box({-1, 0, -1}, {0, 1, 0}).build(), technique);
+    s.size = {203, 121}; // no multiples of a group
+    return s;
+}
+
+std::vector<std::vector<float>> allImages() {
+    std::vector<std::vector<float>> images;
+    const Flow& flow = renderer().flow();
+    for (size_t i = 0; i < flow.images().size(); ++i) {
+        const Image image = flow.image(static_cast<int>(i));
+        if (flow.spec(image).extent.samples > 1) continue;
+        for (int layer = 0; layer < flow.spec(image).extent.layers; ++layer)
+            images.push_back(renderer().read(image, layer).values);
+    }
+    return images;
+}
+
+bool sameBits(const std::vector<std::vector<float>>& a, const std::vector<std::vector<float>>& b) {
+    return a.size() == b.size() && std::equal(a.begin(), a.end(), b.begin(), [](const auto& x, const auto& y) {
+               return x.size() == y.size() && std::memcmp(x.data(), y.data(), x.size() * sizeof(float)) == 0;
+           });
+}
 
 constexpr Scope a{.instance = "a", .owner = "demo"}, b{.instance = "b", .owner = "demo"};
 
@@ -48,6 +83,7 @@ constexpr Scope a{.instance = "a", .owner = "demo"}, b{.instance = "b", .owner =
 TEST_CASE("history carries from frame to frame and starts from zero") {
     (void)renderer(); // for its context
     Sums sums;
+    sums.inSteps = GENERATE(false, true);
     CHECK(sums.frame(a, 1) == 1);
     CHECK(sums.frame(a, 2) == 3);
     CHECK(sums.frame(a, 3) == 6);
@@ -116,4 +152,92 @@ TEST_CASE("the passes' times add up to the frame's") {
     CHECK(timer.newest().milliseconds > 0);
     CHECK(sum == Approx(timer.newest().milliseconds).epsilon(0.05));
     CHECK(timer.newest().passes.size() == renderer().flow().passes().size());
+}
+
+TEST_CASE("a frame in bands is the same frame bit for bit") {
+    for (const Card* card : catalogue()) {
+        CAPTURE(card->id);
+        Session s = demo(card->id);
+        renderer().render(s);
+        const auto whole = allImages();
+        for (const double milliseconds : {0.0, 0.5}) {
+            s.size.x += 16; // so that no image is what it was by chance
+            renderer().render(s);
+            s.size.x -= 16;
+            renderer().reset();
+            renderer().begin(s, Timing::Off);
+            size_t steps = 1;
+            for (; !renderer().advance(milliseconds); ++steps) CHECK(renderer().underWay());
+            CHECK_FALSE(renderer().underWay());
+            if (milliseconds == 0) CHECK(steps > 20 * renderer().flow().passes().size());
+            CHECK(sameBits(allImages(), whole));
+        }
+        const auto& passes = renderer().flow().passes();
+        for (size_t i = 0; i < passes.size(); ++i)
+            if (const Compute* compute = std::get_if<Compute>(&passes[i].work)) {
+                CAPTURE(compute->shader);
+                CHECK(renderer().runner().programOf(i).bandOrigin() >= 0);
+            }
+    }
+    CHECK(driverMessages().empty());
+}
+
+TEST_CASE("a frame under way is of what the session said when it began, and the last picture stays whole") {
+    Session s = demo("pcf");
+    s.techniques.assign("kernel=3");
+    renderer().render(s);
+    const auto small = allImages();
+    const Texture* const picture = renderer().picture();
+    const std::vector<float> shown = picture->read();
+
+    s.techniques.assign("kernel=9");
+    s.size += 40;
+    renderer().begin(s, Timing::Off);
+    for (int i = 0; i < 3; ++i) REQUIRE_FALSE(renderer().advance(0));
+    CHECK(renderer().picture() == picture);
+    CHECK(picture->read() == shown);
+    s.techniques.assign("kernel=3");
+    while (!renderer().advance(0)) {
+    }
+    const auto mixed = allImages();
+    s.techniques.assign("kernel=9");
+    renderer().reset();
+    renderer().render(s);
+    CHECK(sameBits(mixed, allImages()));
+    CHECK_FALSE(sameBits(mixed, small));
+
+    // Given up for another: nothing of it is left.
+    renderer().begin(s, Timing::Queries);
+    REQUIRE_FALSE(renderer().advance(0));
+    renderer().reset();
+    renderer().render(s);
+    CHECK(sameBits(mixed, allImages()));
+}
+
+TEST_CASE("the times of a frame in bands leave out what happened in between") {
+    using Clock = std::chrono::steady_clock;
+    const auto milliseconds = [](Clock::duration d) { return std::chrono::duration<double, std::milli>(d).count(); };
+    for (const Timing timing : {Timing::Finish, Timing::Queries}) {
+        Session s = demo("pcss");
+        const Clock::time_point start = Clock::now();
+        Clock::duration slept{};
+        renderer().begin(s, timing);
+        while (!renderer().advance(1)) {
+            const Clock::time_point before = Clock::now();
+            std::this_thread::sleep_for(std::chrono::milliseconds(20));
+            slept += Clock::now() - before;
+        }
+        const double wall = milliseconds(Clock::now() - start);
+        const PassTimer& timer = renderer().runner().timer();
+        if (timing == Timing::Queries) // they come some frames later
+            for (int i = 0; i < 2; ++i) renderer().render(s, Timing::Queries);
+        CAPTURE(int(timing), wall, milliseconds(slept));
+        REQUIRE(milliseconds(slept) >= 20);
+        CHECK(timer.newest().milliseconds > 0);
+        if (timing == Timing::Finish) CHECK(timer.newest().milliseconds <= wall - milliseconds(slept));
+        double sum = 0;
+        for (const PassTime& time : timer.newest().passes) sum += time.milliseconds;
+        CHECK(sum == Approx(timer.newest().milliseconds).epsilon(0.05));
+        CHECK(timer.newest().passes.size() == renderer().flow().passes().size());
+    }
 }

@@ -120,3 +120,82 @@ TEST_CASE("a light straight above can be turned and comes back") {
     CHECK(light.position.y < 3);
     CHECK(glm::length(light.position) == Approx(4).epsilon(1e-4));
 }
+
+TEST_CASE("a light comes nearer to its target and goes away, within a hundred scene sizes") {
+    AreaLight light;
+    light.position = {1, 4, 2};
+    const float start = lightDirection(light).distance;
+    moveLight(light, 1, 10);
+    CHECK(lightDirection(light).distance == Approx(0.85f * start));
+    moveLight(light, -1000, 10);
+    CHECK(lightDirection(light).distance == Approx(1000));
+}
+
+TEST_CASE("scaling a light keeps its size within the limits and a directional light below a half circle") {
+    AreaLight light;
+    light.size = {2, 3};
+    scaleLight(light, {2, 0.5f});
+    CHECK(light.size == glm::vec2(4, 1.5f));
+    for (int i = 0; i < 200; ++i) scaleLight(light, glm::vec2(2));
+    CHECK(light.size == glm::vec2(static_cast<float>(limits::lightMetres.max)));
+    for (int i = 0; i < 200; ++i) scaleLight(light, glm::vec2(0.5f));
+    CHECK(light.size == glm::vec2(static_cast<float>(limits::lightMetres.min)));
+
+    light.shape = LightShape::Directional;
+    light.size = glm::vec2(40);
+    scaleLight(light, glm::vec2(2));
+    CHECK(light.size.x == Approx(2 * glm::degrees(std::atan(2 * std::tan(glm::radians(20.0f))))));
+    for (int i = 0; i < 50; ++i) scaleLight(light, glm::vec2(2));
+    CHECK(light.size.x == Approx(limits::lightDegrees.max));
+}
+
+TEST_CASE("a motion moves the camera or, as the camera sees it, the light") {
+    Camera camera;
+    camera.eye = {0, 0, 5};
+    camera.target = {0, 0, 0};
+    const Camera before = camera;
+    move(camera, {}, 600, 10);
+    CHECK(camera == before);
+    Motion motion;
+    motion.fly = {1, 2, 3};
+    move(camera, motion, 600, 10);
+    CHECK(glm::distance(camera.eye, glm::vec3(1, 2, 2)) < 1e-5f);
+    CHECK(glm::distance(camera.target, glm::vec3(1, 2, -3)) < 1e-5f);
+
+    AreaLight light;
+    light.position = {0, 2, 0};
+    light.target = {0, 0, 0};
+    move(light, before, motion, 600, 10);
+    CHECK(glm::distance(light.position, glm::vec3(1, 4, -3)) < 1e-5f);
+    CHECK(light.target == glm::vec3(0));
+
+    // Shifted with its target as far as the pointer went at the target's depth.
+    motion = {};
+    motion.pan = {30, 20};
+    const AreaLight unshifted = light;
+    move(light, before, motion, 600, 10);
+    const View view = makeView(before, {600, 600}, 0.1f, 100);
+    const glm::vec4 clip = view.clipFromWorld * glm::vec4(light.target, 1);
+    CHECK(clip.x / clip.w * 300 == Approx(30).epsilon(1e-4));
+    CHECK(clip.y / clip.w * 300 == Approx(-20).epsilon(1e-4));
+    CHECK(glm::distance(light.position - unshifted.position, light.target) < 1e-5f);
+}
+
+TEST_CASE("nothing is put to where it looks") {
+    AreaLight light;
+    const glm::vec3 before = light.position;
+    put(light.position, light.target, light.target, 10);
+    CHECK(light.position == before);
+    put(light.position, {1, 1, 1}, light.target, 10);
+    CHECK(light.position == glm::vec3(1));
+}
+
+TEST_CASE("the speed of flight stays between a thousandth of the scene and ten scenes a second") {
+    ViewSettings settings;
+    settings.changeSpeed(1);
+    CHECK(settings.flySpeed == Approx(0.25f));
+    settings.changeSpeed(1000);
+    CHECK(settings.flySpeed == Approx(10));
+    settings.changeSpeed(-1000);
+    CHECK(settings.flySpeed == Approx(0.001f));
+}

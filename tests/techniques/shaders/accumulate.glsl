@@ -6,9 +6,10 @@ layout(std140, binding = 0) uniform Constants { vec4 added; };
 uniform sampler2D before;
 #endif
 uniform writeonly image2D sum;
+uniform uvec3 bandOrigin;
 void main()
 {
-    ivec2 p = ivec2(gl_GlobalInvocationID.xy);
+    ivec2 p = ivec2(gl_GlobalInvocationID.xy + bandOrigin.xy);
     float value = added.x;
 #ifdef BEFORE
     value += texelFetch(before, p, 0).x;

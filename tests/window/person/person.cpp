@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
-// Does with a window what xdotool cannot: drops a file on it (the XDND protocol, version 5), asks it to close as a
-// window manager does, and looks at its pixels.
+// Does with a window what xdotool cannot: drops a file on it (the XDND protocol, version 5), asks it to close,
+// minimises and restores it as a window manager does, and looks at its pixels.
 //
-//     person drop WINDOW FILE        person close WINDOW        person look WINDOW X Y WIDTH HEIGHT
+//     person drop WINDOW FILE        person close|minimise|restore WINDOW        person look WINDOW X Y WIDTH HEIGHT
 //
 // Exit status 0 when the window has taken the file or the request was sent. `look` prints the
 // colours, six hex digits a pixel.
@@ -27,6 +27,14 @@ public:
 
     void close() {
         send("WM_PROTOCOLS", static_cast<long>(atom("WM_DELETE_WINDOW")), CurrentTime);
+        XSync(display_, False);
+    }
+
+    void minimise(bool away) {
+        const long state[] = {away ? IconicState : NormalState, 0};
+        XChangeProperty(display_, target_, atom("WM_STATE"), atom("WM_STATE"), 32, PropModeReplace,
+                        reinterpret_cast<const unsigned char*>(state), 2);
+        away ? XUnmapWindow(display_, target_) : XMapWindow(display_, target_);
         XSync(display_, False);
     }
 
@@ -113,6 +121,10 @@ int main(int argc, char** argv) {
         Person(std::strtoul(argv[2], nullptr, 0)).close();
         return 0;
     }
+    if ((verb == "minimise" || verb == "restore") && argc == 3) {
+        Person(std::strtoul(argv[2], nullptr, 0)).minimise(verb == "minimise");
+        return 0;
+    }
     if (verb == "drop" && argc == 4) return Person(std::strtoul(argv[2], nullptr, 0)).drop(argv[3]) ? 0 : 1;
     if (verb == "look" && argc == 7) {
         const auto number = [&](int i) { return std::atoi(argv[i]); };
@@ -122,6 +134,6 @@ int main(int argc, char** argv) {
             std::printf("%06lx\n", pixel);
         return 0;
     }
-    std::fprintf(stderr, "person: drop WINDOW FILE | close WINDOW | look WINDOW X Y WIDTH HEIGHT\n");
+    std::fprintf(stderr, "person: drop WINDOW FILE | close|minimise|restore WINDOW | look WINDOW X Y WIDTH HEIGHT\n");
     return 2;
 }

@@ -1,0 +1,59 @@
+#!/usr/bin/env bash
+# SPDX-License-Identifier: MIT
+# Loads a scene of 100 MB beside the one that is shown: the window stays alive, Cancel and bad files keep what there is,
+# and memory stays in bounds.
+#
+#     use_loading.sh PENUMBRA PERSON FRAME_LOG_LIBRARY BIG_SCENE        exit status 77: left out, a tool is missing
+source "$(dirname "${BASH_SOURCE[0]}")/person.sh"
+bigScene=$4
+
+memory() { awk '/^VmHWM/ { print $2 * 1024 }' "/proc/$program/status"; } # most bytes ever held
+spread() { # of the work of frames from line $1 to $2 of the log
+    sed -n "$1,$2p" "$folder/frames" | sort -k2 -n | awk '{ work[NR] = $2 } END {
+        printf "%d %.0f %.0f %.0f\n", NR, work[int((NR + 1) / 2)], work[int(NR * 0.95 + 0.5)], work[NR] }'
+}
+read -r geometry decoded < <("$bigScene" "$folder/big.glb" 100)
+head -c 60000000 "$folder/big.glb" >"$folder/cut.glb"
+
+start --size 1280x720 --technique hard
+last=$(picture) || fail "F12 wrote no picture"
+
+# What a frame costs with nothing to load, while the mouse keeps it going.
+from=$(shown)
+for i in $(seq 40); do xdotool mousemove $((300 + 5 * i)) 650; frames 1; done
+read -r calm median most longest < <(spread "$from" "$(shown)")
+echo "frames without loading: $calm, median $median ms, 95th percentile $most ms, longest $longest ms"
+
+# Cancelled by Escape, and by its button: the old scene stays.
+"$person" drop "$window" "$folder/big.glb" || fail "the window did not take a dropped file"
+frames 5
+hand key Escape
+frames 20
+[[ $(title) == courtyard* ]] || fail "a cancelled scene came all the same: $(title)"
+keeps true
+
+# A file that ends too soon.
+"$person" drop "$window" "$folder/cut.glb" || fail "the window did not take a dropped file"
+frames 30
+[[ $(title) == courtyard* ]] || fail "half a file came: $(title)"
+hand key Escape # its message
+keeps true
+
+baseline=$(memory)
+from=$(shown)
+"$person" drop "$window" "$folder/big.glb" || fail "the window did not take a dropped file"
+waitTitle big
+to=$(($(shown) - 2)) # the last ones draw the new scene
+read -r count median2 most2 longest2 < <(spread "$from" "$to")
+echo "frames while loading 100 MB: $count, median $median2 ms, 95th percentile $most2 ms, longest $longest2 ms"
+((count > 10)) || fail "only $count frames while the scene was loading"
+((median2 <= median + 50)) || fail "frames take $median2 ms while loading, $median ms before"
+((most2 <= most + 50)) || fail "one frame in 20 takes more than $most2 ms while loading, $most ms before"
+peak=$(memory)
+awk -v peak="$peak" -v base="$baseline" -v data=$((geometry + decoded)) 'BEGIN {
+    printf "memory: %.0f MB above the baseline for %.0f MB of vertices and pictures, %.2f times\n",
+        (peak - base) / 1e6, data / 1e6, (peak - base) / data
+    exit !(peak - base <= 3 * data) }' || fail "too much memory"
+hand key ctrl+q
+ended "Ctrl+Q"
+echo "all done"
