@@ -28,9 +28,10 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr float fontHeight = 15;     // pixels at 96 dots per inch
-constexpr int settlingFrames = 4;    // that ImGui needs to answer an input
-constexpr double tapSeconds = 0.05;  // how long a key counts as held at least
+constexpr float fontHeight = 15;                                 // pixels at 96 dots per inch
+constexpr int settlingFrames = 4;                                // that ImGui needs to answer an input
+constexpr double tapSeconds = 0.05;                              // how long a key counts as held at least
+constexpr double doubleClickSeconds = 0.4, doubleClickReach = 6; // window units at 96 dots per inch
 constexpr double longestHold = 0.25; // in one frame [s]; after a pause of the program nothing leaps
 
 std::string& lastGlfwError() {
@@ -94,8 +95,11 @@ public:
     GLFWwindow* get() const { return window_; }
     bool open() const { return !glfwWindowShouldClose(window_); }
     Heard take() { return std::exchange(heard_, {}); }
-    // Hears keys before ImGui, which must have installed its callbacks already.
-    void hearKeys() { glfwSetKeyCallback(window_, onKey); }
+    // Hears keys and buttons before ImGui, which must have installed its callbacks already.
+    void hearInput() {
+        glfwSetKeyCallback(window_, onKey);
+        glfwSetMouseButtonCallback(window_, onButton);
+    }
 
     bool visible() const {
         const glm::ivec2 pixels = framebufferSize();
@@ -126,6 +130,7 @@ public:
 private:
     static Heard& heard(GLFWwindow* window) { return of(window).heard_; }
     static void onKey(GLFWwindow* window, int key, int code, int action, int modifiers);
+    static void onButton(GLFWwindow* window, int button, int action, int modifiers);
     static void onStroke(GLFWwindow* window, int key, int modifiers);
     static void onDrop(GLFWwindow* window, int count, const char** paths) {
         for (int i = 0; i < count; ++i) heard(window).dropped.push_back(paths[i]);
@@ -141,6 +146,8 @@ private:
     GLFWwindow* window_ = nullptr;
     Heard heard_;
     std::array<Hold, GLFW_KEY_LAST + 1> holds_{};
+    double lastClick_ = -1; // of the left button [s], and where
+    glm::dvec2 lastPlace_{0};
 };
 
 // A context that shares the window's objects, for another thread to fill them.
@@ -190,6 +197,22 @@ void Window::onKey(GLFWwindow* window, int key, int code, int action, int modifi
         heard(window).releasedAtOnce.push_back({key, modifiers});
     else
         ImGui_ImplGlfw_KeyCallback(window, key, code, action, modifiers);
+}
+
+// Two clicks within a slow frame are one to ImGui 1.86.
+void Window::onButton(GLFWwindow* window, int button, int action, int modifiers) {
+    if (button == GLFW_MOUSE_BUTTON_LEFT && action == GLFW_PRESS) {
+        Window& self = of(window);
+        glm::dvec2 place(0);
+        glfwGetCursorPos(window, &place.x, &place.y);
+        const double now = glfwGetTime(), reach = doubleClickReach * static_cast<double>(self.contentScale());
+        const bool twice = self.lastClick_ >= 0 && now - self.lastClick_ < doubleClickSeconds &&
+                           glm::distance(place, self.lastPlace_) < reach;
+        self.heard_.struck.doubleClick = self.heard_.struck.doubleClick || twice;
+        self.lastClick_ = twice ? -1 : now;
+        self.lastPlace_ = place;
+    }
+    ImGui_ImplGlfw_MouseButtonCallback(window, button, action, modifiers);
 }
 
 float Window::secondsDown(int key) {
@@ -265,7 +288,7 @@ public:
         ImGui::CreateContext();
         ImGui::GetIO().IniFilename = nullptr; // written by keepLayout, as a whole
         ImGui_ImplGlfw_InitForOpenGL(window.get(), true);
-        window.hearKeys();
+        window.hearInput();
         ImGui_ImplOpenGL3_Init("#version 450 core");
         std::error_code ignored;
         if (const fs::path file = layoutFile(); fs::is_regular_file(file, ignored)) try {

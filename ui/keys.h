@@ -5,7 +5,7 @@
 
 namespace penumbra {
 
-// What the keyboard says in one frame, free of any window system.
+// What the keyboard says in one frame, and of the mouse its double click, free of any window system.
 struct Keys {
     // How long each was down in this frame [s], so that slow frames move as far as fast ones. The first frame of a
     // stroke counts a little more: a tap moves a little.
@@ -31,6 +31,7 @@ struct Keys {
     bool picture = false;       // F12: of the view
     bool windowPicture = false; // Shift+F12: of the whole window
     bool escape = false;
+    bool doubleClick = false; // of the left button
 };
 
 struct KeyHelp {

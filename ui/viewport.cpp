@@ -187,8 +187,7 @@ void Viewport::navigate(Session& session, const SceneFacts& facts, const Keys& k
     if (drag_ == Drag::None)
         handle_ = hovered && lightDrawn_ ? handleAt(session.light, screen_, pointer, 0.55f * ImGui::GetFontSize())
                                          : LightHandle::None;
-    const bool doubleClick = hovered && ImGui::IsMouseDoubleClicked(ImGuiMouseButton_Left);
-    if (doubleClick && handle_ == LightHandle::None) {
+    if (keys.doubleClick && hovered && handle_ == LightHandle::None) {
         const glm::vec2 place = (pointer - screen_.corner) / screen_.size * glm::vec2(session.size);
         point_ = {glm::ivec2(place), keys.light};
     }

@@ -50,7 +50,7 @@ done
 xdotool windowsize "$window" 1280 720
 frames 6
 keeps true
-hand key ctrl+q
+xdotool key ctrl+q
 ended "Ctrl+Q"
 
 # A picture that takes long: the window answers meanwhile, and what it shows at last is what `capture` makes.
@@ -69,7 +69,7 @@ tail -n $((after - before)) "$folder/frames" | sort -k2 -n | awk '{ work[NR] = $
 hand key Home
 kept=$(picture) || fail "no picture of the slow technique"
 "$penumbra" capture courtyard "${slow[@]}" --size "$(sizeOf "$kept")" -o "$folder/captured.png" 2>/dev/null
-hand key ctrl+q
+xdotool key ctrl+q
 ended "Ctrl+Q during a slow picture"
 pixels() { # the image data of a PNG, without the texts before it
     tail -c +"$(grep -abo IDAT "$1" | head -n 1 | cut -d: -f1)" "$1" | md5sum

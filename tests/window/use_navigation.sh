@@ -64,6 +64,6 @@ changes drag $((x + radius)) "$y" $((x + radius + 30)) "$y" # the edge
 before=$last
 changes drag "$x" "$y" $((x + 60)) $((y - 50)) # the target lies behind the centre
 changes drag $((x + 60)) $((y - 50)) "$x" "$y"
-hand key ctrl+q
+xdotool key ctrl+q
 ended "Ctrl+Q"
 echo "all done"

@@ -5,7 +5,7 @@
 //     FRAME_LOG=FILE LD_PRELOAD=libframe-log.so penumbra
 //
 // Each line: milliseconds since the first frame, milliseconds of work (from the end of the wait for input to the end of
-// the swap).
+// the swap), and the same without the time that the thread was ready but had no processor, because of other programs.
 #include <dlfcn.h>
 
 #include <chrono>
@@ -18,8 +18,24 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 Clock::time_point workStart = Clock::now();
+double readyStart = 0;
 
 template <class Function> Function real(const char* name) { return reinterpret_cast<Function>(dlsym(RTLD_NEXT, name)); }
+
+// How long the thread has waited for a processor in its life [ms]; 0 where the kernel does not tell.
+double ready() {
+    std::FILE* const file = std::fopen("/proc/thread-self/schedstat", "r");
+    if (!file) return 0;
+    unsigned long long ran = 0, waited = 0;
+    const bool told = std::fscanf(file, "%llu %llu", &ran, &waited) == 2;
+    std::fclose(file);
+    return told ? static_cast<double>(waited) * 1e-6 : 0;
+}
+
+void startWork() {
+    workStart = Clock::now();
+    readyStart = ready();
+}
 
 double milliseconds(Clock::duration duration) { return std::chrono::duration<double, std::milli>(duration).count(); }
 
@@ -30,19 +46,19 @@ extern "C" {
 void glfwPollEvents() {
     static const auto poll = real<void (*)()>("glfwPollEvents");
     poll();
-    workStart = Clock::now();
+    startWork();
 }
 
 void glfwWaitEvents() {
     static const auto wait = real<void (*)()>("glfwWaitEvents");
     wait();
-    workStart = Clock::now();
+    startWork();
 }
 
 void glfwWaitEventsTimeout(double seconds) {
     static const auto wait = real<void (*)(double)>("glfwWaitEventsTimeout");
     wait(seconds);
-    workStart = Clock::now();
+    startWork();
 }
 
 void glfwSwapBuffers(GLFWwindow* window) {
@@ -55,7 +71,8 @@ void glfwSwapBuffers(GLFWwindow* window) {
     swap(window);
     const Clock::time_point now = Clock::now();
     if (!log) return;
-    std::fprintf(log, "%.2f %.2f\n", milliseconds(now - first), milliseconds(now - workStart));
+    const double work = milliseconds(now - workStart);
+    std::fprintf(log, "%.2f %.2f %.2f\n", milliseconds(now - first), work, work - (ready() - readyStart));
     std::fflush(log);
 }
 }
