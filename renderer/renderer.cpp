@@ -23,10 +23,10 @@ std::string checkedDriver() {
 
 } // namespace
 
-PreparedScene::PreparedScene(std::shared_ptr<const Scene> scene) : scene_(std::move(scene)) {
+PreparedScene::PreparedScene(std::shared_ptr<const Scene> scene, Progress* progress) : scene_(std::move(scene)) {
     state_.setScene(scene_);
     state_.update(0, 0, false);
-    geometry_ = std::make_unique<GpuScene>(state_);
+    geometry_ = std::make_unique<GpuScene>(state_, progress);
     state_.restart();
 }
 PreparedScene::~PreparedScene() = default;

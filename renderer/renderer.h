@@ -18,7 +18,7 @@ class GpuScene;
 // or in one that shares its objects, on any thread.
 class PreparedScene {
 public:
-    explicit PreparedScene(std::shared_ptr<const Scene> scene);
+    explicit PreparedScene(std::shared_ptr<const Scene> scene, Progress* progress = nullptr); // may throw Cancelled
     ~PreparedScene();
     PreparedScene(PreparedScene&&) noexcept;
     PreparedScene& operator=(PreparedScene&&) noexcept;

@@ -41,7 +41,7 @@ void SceneLoader::run(Task& task, const std::filesystem::path& file, const Impor
         const std::lock_guard lock(context_);
         makeCurrent_(true);
         try {
-            task.loaded.emplace(opened, PreparedScene(opened.scene));
+            task.loaded.emplace(opened, PreparedScene(opened.scene, &task.progress));
             glFinish(); // the other context may use it from now on
         } catch (...) {
             task.failure = std::current_exception();

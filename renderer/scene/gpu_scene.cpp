@@ -7,9 +7,11 @@
 
 #include <algorithm>
 #include <bit>
+#include <chrono>
 #include <cstddef>
 #include <limits>
 #include <map>
+#include <thread>
 #include <tuple>
 
 namespace penumbra {
@@ -55,11 +57,21 @@ GpuScene::TextureHandle GpuScene::upload(const TextureImage& image) {
     return handle;
 }
 
-GpuScene::GpuScene(const SceneState& state) {
+GpuScene::GpuScene(const SceneState& state, Progress* progress) {
+    const auto pause = [&] {
+        if (!progress) return;
+        progress->report("sending it to the GPU", 1);
+        glFlush();
+        // A driver locks what contexts share during an upload; another thread that draws gets its turn here.
+        std::this_thread::sleep_for(std::chrono::milliseconds(1));
+    };
     planPoses(state);
     uploadVertices(*state.scene());
     planDraws(state);
-    for (const TextureImage& image : state.scene()->textures) textures_.push_back(upload(image));
+    for (const TextureImage& image : state.scene()->textures) {
+        pause();
+        textures_.push_back(upload(image));
+    }
     textures_.push_back(upload({.name = "white", .width = 1, .height = 1, .rgba = {255, 255, 255, 255}}));
     update(state);
 }

@@ -16,7 +16,7 @@ class GpuScene final : public Geometry {
 public:
     // Makes buffers and textures in the current context, which may be another one than the one that draws, if the two
     // share objects. Takes long for a large scene.
-    explicit GpuScene(const SceneState& state);
+    explicit GpuScene(const SceneState& state, Progress* progress = nullptr);
     // Sends the matrices, joints and weights of the state if they changed.
     void update(const SceneState& state);
 

@@ -58,7 +58,6 @@ read -r count median2 most2 _ < <(spread "$from" "$to" 3)
 # A processor that is busy with other programs, or with loading, is not held against the window.
 ((median2 <= median + 50)) || fail "frames take $median2 ms while loading, $median ms before"
 ((most2 <= most + 50)) || fail "one frame in 20 takes more than $most2 ms while loading, $most ms before"
-[[ -z ${KEEP_FRAMES:-} ]] || sed -n "$from,\$p" "$folder/frames" >"$KEEP_FRAMES"
 peak=$(memory)
 awk -v peak="$peak" -v base="$baseline" -v data=$((geometry + decoded)) 'BEGIN {
     printf "memory: %.0f MB above the baseline for %.0f MB of vertices and pictures, %.2f times\n",
