@@ -37,6 +37,7 @@ struct Keys {
 struct KeyHelp {
     std::string_view keys, meaning; // no meaning: a title
 };
+inline constexpr std::string_view keyHelpSecondHalf = "Images, in the buffers"; // that far it is about the view
 inline constexpr KeyHelp keyHelp[] = {
     {"Camera, in the view", ""},
     {"left drag,  arrow keys", "orbit round the target"},

@@ -2,6 +2,7 @@
 #include "ui/workspace.h"
 
 #include <algorithm>
+#include <span>
 
 namespace penumbra {
 
@@ -34,6 +35,25 @@ bool beginDialog(const char* title, float widest = 36) { // font heights
     ImGui::SetNextWindowPos({screen.x / 2, screen.y / 2}, ImGuiCond_Always, {0.5f, 0.5f});
     return ImGui::BeginPopupModal(
         title, nullptr, ImGuiWindowFlags_AlwaysAutoResize | ImGuiWindowFlags_NoMove | ImGuiWindowFlags_NoSavedSettings);
+}
+
+void keyTable(const char* id, std::span<const KeyHelp> lines) {
+    if (!ImGui::BeginTable(id, 2, ImGuiTableFlags_SizingStretchProp)) return;
+    ImGui::TableSetupColumn("keys", ImGuiTableColumnFlags_WidthStretch, 0.44f);
+    ImGui::TableSetupColumn("meaning", ImGuiTableColumnFlags_WidthStretch, 0.56f);
+    for (const KeyHelp& help : lines) {
+        ImGui::TableNextRow();
+        ImGui::TableNextColumn();
+        if (help.meaning.empty()) {
+            ImGui::Spacing();
+            text(colour::muted, help.keys);
+            continue;
+        }
+        wrappedText(help.keys);
+        ImGui::TableNextColumn();
+        wrappedText(help.meaning);
+    }
+    ImGui::EndTable();
 }
 
 } // namespace
@@ -414,22 +434,20 @@ void Workspace::helpDialog(bool close) {
     constexpr const char* title = "Keys and mouse";
     if (openHelp_) ImGui::OpenPopup(title);
     openHelp_ = false;
-    if (!beginDialog(title, 50)) return;
-    if (ImGui::BeginTable("keys", 2, ImGuiTableFlags_SizingStretchProp)) {
-        ImGui::TableSetupColumn("keys", ImGuiTableColumnFlags_WidthStretch, 0.44f);
-        ImGui::TableSetupColumn("meaning", ImGuiTableColumnFlags_WidthStretch, 0.56f);
-        for (const KeyHelp& help : keyHelp) {
-            ImGui::TableNextRow();
-            ImGui::TableNextColumn();
-            if (help.meaning.empty()) {
-                ImGui::Spacing();
-                text(colour::muted, help.keys);
-                continue;
-            }
-            wrappedText(help.keys);
-            ImGui::TableNextColumn();
-            wrappedText(help.meaning);
+    if (!beginDialog(title, 78)) return;
+    // The view's keys and the others side by side where there is room.
+    const auto others = std::find_if(std::begin(keyHelp), std::end(keyHelp),
+                                     [](const KeyHelp& help) { return help.keys == keyHelpSecondHalf; });
+    const bool wide = ImGui::GetContentRegionAvail().x > 60 * ImGui::GetFontSize();
+    if (ImGui::BeginTable("halves", wide ? 2 : 1, ImGuiTableFlags_SizingStretchProp)) {
+        if (wide) {
+            ImGui::TableSetupColumn("view", ImGuiTableColumnFlags_WidthStretch, 0.57f);
+            ImGui::TableSetupColumn("others", ImGuiTableColumnFlags_WidthStretch, 0.43f);
         }
+        ImGui::TableNextColumn();
+        keyTable("view", std::span(std::begin(keyHelp), others));
+        ImGui::TableNextColumn();
+        keyTable("others", std::span(others, std::end(keyHelp)));
         ImGui::EndTable();
     }
     ImGui::Spacing();

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: MIT
-# What a person does at a virtual screen, for the scripts beside it. Source it as
+# What a person does at a virtual screen, for the scripts that source this. They are called with
 #
-#     source window.sh PENUMBRA PERSON FRAME_LOG_LIBRARY
+#     PENUMBRA PERSON FRAME_LOG_LIBRARY        exit status 77: left out, a tool is missing
 #
 # Steps wait for frames and for what they bring about, not for a time, so that a busy machine is only slower.
 set -euo pipefail
