@@ -32,19 +32,35 @@ to=$(shown)
 tell "without loading" "$from" "$to"
 read -r _ median most _ < <(spread "$from" "$to" 3)
 
-# Cancelled by Escape, and by its button: the old scene stays.
-"$person" drop "$window" "$folder/big.glb" || fail "the window did not take a dropped file"
-frames 5
-hand key Escape
-frames 20
-[[ $(title) == courtyard* ]] || fail "a cancelled scene came all the same: $(title)"
+# What is seen in the view's lower left corner, where the bar is, and above it, which a message dims.
+low() { "$person" look "$window" 20 645 200 50 | cksum; }
+high() { "$person" look "$window" 20 60 40 40 | cksum; }
+barShown() { [[ $(low) != "$noBar" ]]; }
+barGone() { [[ $(low) == "$noBar" ]]; }
+dimmed() { [[ $(high) != "$clear" ]]; }
+cleared() { [[ $(high) == "$clear" ]]; }
+hand mousemove 640 20
+sleep 7 # until the message about the picture has faded
+noBar=$(low) clear=$(high)
+
+# Cancelled by Escape and by its button: the old scene stays.
+for cancel in "key Escape" "mousemove 425 684 click 1"; do
+    "$person" drop "$window" "$folder/big.glb" || fail "the window did not take a dropped file"
+    until_ barShown
+    hand $cancel
+    hand mousemove 640 20
+    sleep 7 # until the message about it has faded
+    until_ barGone
+    [[ $(title) == courtyard* ]] || fail "a cancelled scene came all the same: $(title)"
+done
 keeps true
 
-# A file that ends too soon.
+# A file that ends too soon: a message, and the old scene stays.
 "$person" drop "$window" "$folder/cut.glb" || fail "the window did not take a dropped file"
-frames 30
+until_ dimmed
+hand key Escape
+until_ cleared
 [[ $(title) == courtyard* ]] || fail "half a file came: $(title)"
-hand key Escape # its message
 keeps true
 
 baseline=$(memory)
