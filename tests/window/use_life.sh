@@ -71,8 +71,5 @@ kept=$(picture) || fail "no picture of the slow technique"
 "$penumbra" capture courtyard "${slow[@]}" --size "$(sizeOf "$kept")" -o "$folder/captured.png" 2>/dev/null
 xdotool key ctrl+q
 ended "Ctrl+Q during a slow picture"
-pixels() { # the image data of a PNG, without the texts before it
-    tail -c +"$(grep -abo IDAT "$1" | head -n 1 | cut -d: -f1)" "$1" | md5sum
-}
-[[ $(pixels "$kept") == "$(pixels "$folder/captured.png")" ]] || fail "the picture in bands is not the captured one"
+differ "$kept" "$folder/captured.png" && fail "the picture in bands is not the captured one"
 echo "all done"

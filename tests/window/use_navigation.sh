@@ -14,7 +14,8 @@ isFirst() { # a step that must lead back to the first picture
     return 0
 }
 
-start --size 1280x720 --technique hard
+# A near light of some size, so that each of its movements shows.
+start --size 1000x640 --technique pcss --light 3,6,4,0,0.5,0 --light-shape disk --light-size 0.8
 first=$(picture) || fail "F12 wrote no picture"
 last=$first
 
@@ -32,7 +33,7 @@ for key in w a s d e q; do changes shortly "$key"; done
 keeps hand key equal # flies faster from now on
 changes shortly w
 changes hand key f
-isFirst hand key c # the scene's only camera
+isFirst hand key c # the first of the scene's cameras is its own
 
 changes hold l drag 400 400 460 420
 changes hold l wheel 400 400 2
@@ -43,9 +44,12 @@ changes hold l shortly e
 changes hand key period
 changes hand key comma
 changes hold l doubleClick 300 500
-isFirst hold l hand key Home
-changes hand key period
-isFirst hold l hand key c
+changes hold l hand key Home # the scene's own
+first=$last
+changes hand key Left
+isFirst hand key Home
+changes hold l drag 400 400 430 380
+isFirst hold l hand key c # the first of the scene's lights is its own
 
 keeps hand key g # the handles are not of the picture
 "$person" close "$window"
@@ -61,7 +65,6 @@ last=$(picture)
 keeps drag "$x" "$y" "$x" "$y"
 hand key g
 changes drag $((x + radius)) "$y" $((x + radius + 30)) "$y" # the edge
-before=$last
 changes drag "$x" "$y" $((x + 60)) $((y - 50)) # the target lies behind the centre
 changes drag $((x + 60)) $((y - 50)) "$x" "$y"
 xdotool key ctrl+q
