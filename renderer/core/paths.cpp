@@ -32,6 +32,14 @@ fs::path folderFromEnvironment(const char* name) {
     return folder.is_absolute() ? folder : fs::path();
 }
 
+// XDG base directories, but for a variable of our own.
+fs::path ownFolder(const char* ours, const char* xdg, const char* belowHome) {
+    if (const fs::path own = folderFromEnvironment(ours); !own.empty()) return own;
+    if (const fs::path shared = folderFromEnvironment(xdg); !shared.empty()) return shared / "penumbra";
+    const fs::path home = folderFromEnvironment("HOME");
+    return home.empty() ? fs::path() : home / belowHome / "penumbra";
+}
+
 } // namespace
 
 const fs::path& shaderFolder() {
@@ -44,11 +52,8 @@ const fs::path& assetFolder() {
     return folder;
 }
 
-fs::path configFolder() {
-    if (const fs::path own = folderFromEnvironment("PENUMBRA_CONFIG_DIR"); !own.empty()) return own;
-    if (const fs::path xdg = folderFromEnvironment("XDG_CONFIG_HOME"); !xdg.empty()) return xdg / "penumbra";
-    const fs::path home = folderFromEnvironment("HOME");
-    return home.empty() ? fs::path() : home / ".config" / "penumbra";
-}
+fs::path configFolder() { return ownFolder("PENUMBRA_CONFIG_DIR", "XDG_CONFIG_HOME", ".config"); }
+
+fs::path cacheFolder() { return ownFolder("PENUMBRA_CACHE_DIR", "XDG_CACHE_HOME", ".cache"); }
 
 } // namespace penumbra

@@ -14,4 +14,8 @@ const std::filesystem::path& assetFolder();
 // $XDG_CONFIG_HOME or in ~/.config. It need not exist; empty if none of the variables is an absolute path.
 std::filesystem::path configFolder();
 
+// Where is kept what can be worked out again: $PENUMBRA_CACHE_DIR, or `penumbra` in $XDG_CACHE_HOME or in ~/.cache.
+// As configFolder() otherwise.
+std::filesystem::path cacheFolder();
+
 } // namespace penumbra

@@ -9,7 +9,6 @@
 #include <bit>
 #include <chrono>
 #include <cstddef>
-#include <limits>
 #include <map>
 #include <thread>
 #include <tuple>
@@ -192,11 +191,7 @@ void GpuScene::planDraws(const SceneState& state) {
             if (newCommand)
                 commands.push_back({p.indexCount, 0, p.firstIndex, static_cast<int32_t>(firstVertex), draw});
             ++commands.back().instances;
-            // What the mask's texture must have at least for its texel to exist.
-            const float least = material.alphaCutoff <= 0    ? 0.0f
-                                : material.baseColour.a <= 0 ? std::numeric_limits<float>::max()
-                                                             : material.alphaCutoff / material.baseColour.a;
-            data.baseColour = glm::vec4(glm::vec3(material.baseColour), least);
+            data.baseColour = glm::vec4(glm::vec3(material.baseColour), leastAlpha(material));
             data.emissive_unlit = glm::vec4(material.emissive, material.unlit ? 1 : 0);
         }
         draws_.push_back(data);

@@ -1,28 +1,10 @@
 // SPDX-License-Identifier: MIT
 #include "renderer/scene/light.h"
 
-#include <glm/gtc/constants.hpp>
-
+#include <algorithm>
 #include <array>
-#include <cmath>
 
 namespace penumbra {
-namespace {
-
-// Concentric map of [-1, 1]² to the unit disk (Shirley and Chiu, A Low Distortion Map Between Disk and Square, 1997).
-glm::vec2 concentricDisk(glm::vec2 square) {
-    if (square.x == 0 && square.y == 0) return {0, 0};
-    const float quarter = glm::quarter_pi<float>();
-    if (std::abs(square.x) > std::abs(square.y)) {
-        const float angle = quarter * square.y / square.x;
-        return square.x * glm::vec2(std::cos(angle), std::sin(angle));
-    }
-    const float angle = quarter * square.x / square.y;
-    return square.y * glm::vec2(std::sin(angle), std::cos(angle));
-}
-
-} // namespace
-
 std::span<const std::string_view> lightShapeNames() {
     static constexpr std::array<std::string_view, 3> names{"rectangle", "disk", "directional"};
     return names;
@@ -52,7 +34,18 @@ glm::vec2 halfSize(const AreaLight& light) {
 
 glm::vec2 lightPoint(const AreaLight& light, glm::vec2 u) {
     const glm::vec2 square = 2.0f * u - 1.0f;
-    return halfSize(light) * (light.shape == LightShape::Rectangle ? square : concentricDisk(square));
+    if (light.shape == LightShape::Rectangle) return halfSize(light) * square;
+    const PlanePoint p = concentricDisk({square.x, square.y});
+    return halfSize(light) * glm::vec2(p.x, p.y);
+}
+
+glm::vec2 haltonPoint(uint32_t i) {
+    const auto inverse = [](uint32_t rest, uint32_t base) {
+        double value = 0, share = 1;
+        for (; rest > 0; rest /= base) value += (share /= base) * (rest % base);
+        return std::min(static_cast<float>(value), 0x1.fffffep-1f); // rounding must not reach 1
+    };
+    return {inverse(i, 2), inverse(i, 3)};
 }
 
 } // namespace penumbra

@@ -5,6 +5,8 @@
 
 #include <glm/glm.hpp>
 
+#include <cmath>
+#include <cstdint>
 #include <span>
 #include <string_view>
 
@@ -33,10 +35,28 @@ glm::mat4 lightFromWorld(const AreaLight& light);
 // Half the size along X and Y [m] (a disk: its radius, twice; directional: tan of the angular radius, twice, no unit).
 glm::vec2 halfSize(const AreaLight& light);
 
+// Concentric map of [−1, 1]² to the unit disk, area-preserving (Shirley and Chiu, A Low Distortion Map Between Disk and
+// Square, 1997). Without branches and library calls, so that a loop over points becomes vector code; the angle is
+// within ±π/4, where these Taylor polynomials err by less than a float's rounding.
+struct PlanePoint {
+    float x, y;
+};
+inline PlanePoint concentricDisk(PlanePoint square) {
+    const bool wide = std::abs(square.x) > std::abs(square.y);
+    const float radius = wide ? square.x : square.y, across = wide ? square.y : square.x;
+    const float a = 0.785398163f * across / (radius != 0 ? radius : 1), a2 = a * a;
+    const float sine = a * (1 + a2 * (-1 / 6.0f + a2 * (1 / 120.0f + a2 * (-1 / 5040.0f + a2 / 362880))));
+    const float cosine = 1 + a2 * (-0.5f + a2 * (1 / 24.0f + a2 * (-1 / 720.0f + a2 / 40320)));
+    return {radius * (wide ? cosine : sine), radius * (wide ? sine : cosine)};
+}
+
 // The point of the light that belongs to `u` in [0, 1)², in light space [m] (z = 0); area-preserving: rectangles
-// stretch the square, disks use the concentric map (Shirley and Chiu 1997). A directional light's point is the tangent
-// offset (x, y) of its direction: seen from any receiver, the sample lies towards normalize((x, y, 1)) in light space,
-// since the light looks down −Z and +Z points back to it.
+// stretch the square, disks use the concentric map. A directional light's point is the tangent offset (x, y) of its
+// direction: seen from any receiver, the sample lies towards normalize((x, y, 1)) in light space, since the light looks
+// down −Z and +Z points back to it.
 glm::vec2 lightPoint(const AreaLight& light, glm::vec2 u);
+
+// The i-th point of the Halton sequence of bases 2 and 3 in [0, 1)²; the 0-th is the corner (0, 0).
+glm::vec2 haltonPoint(uint32_t i);
 
 } // namespace penumbra

@@ -9,6 +9,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace penumbra {
 namespace {
@@ -78,6 +79,11 @@ Bounds transformed(const Bounds& bounds, const glm::mat4& matrix) {
         result.add(glm::vec3(matrix * glm::vec4(p, 1)));
     }
     return result;
+}
+
+float leastAlpha(const Material& material) {
+    if (material.alphaCutoff <= 0) return 0;
+    return material.baseColour.a > 0 ? material.alphaCutoff / material.baseColour.a : std::numeric_limits<float>::max();
 }
 
 uint64_t Scene::triangleCount() const {

@@ -52,6 +52,8 @@ struct Material {
     bool unlit = false; // shows its base colour as it is, in light and in shadow
     glm::vec3 emissive{0};
 };
+// The least alpha of texture times vertex colour with which a point of a masked material exists.
+float leastAlpha(const Material& material);
 
 // Four joints that pull on a vertex, as indices into Skin::joints, and how strongly; a second set follows for vertices
 // of up to eight. The weights of a vertex are not negative and sum to 1.

@@ -11,6 +11,7 @@
 
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -41,13 +42,22 @@ struct TruthInput {
 // Of the frame that the renderer has drawn of this session, from the images scene.depth and scene.normal. Stalls.
 TruthInput readTruthInput(const Renderer& renderer, const Session& session);
 
+struct Truth;
+// Where truths are kept that are known already; called from the thread that traces.
+class TruthCache {
+public:
+    virtual ~TruthCache() = default;
+    virtual std::optional<Truth> find(uint64_t hash) = 0; // of Truth::hash
+    virtual void keep(const Truth& truth) = 0;
+};
+
 struct TruthSettings {
     int leastSamples = 256;             // rays a pixel, at least; rounded up to a multiple of truthStep
     int mostSamples = 16384;            // and at most; equal: the same for every pixel
     double wantedStandardError = 0.001; // it ends when the mean over penumbra pixels is below this
     int threads = 0;                    // 0: one per core
     bool background = false;            // threads of low priority, that leave the cores to whoever draws
-    bool cached = true;                 // look for it on disk first, keep it there
+    TruthCache* cache = nullptr;        // asked first, and given what was traced; app/truth_cache.h has one on disk
 };
 inline constexpr int truthReplicates = 8;              // independently shifted Halton sequences a pixel
 inline constexpr int truthStep = truthReplicates * 16; // rays a pixel that are traced together

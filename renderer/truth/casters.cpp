@@ -1,0 +1,166 @@
+// SPDX-License-Identifier: MIT
+#include "renderer/truth/casters.h"
+
+#include "renderer/core/error.h"
+#include "renderer/scene/posing.h"
+#include "renderer/truth/hash.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace penumbra {
+namespace {
+
+int wrapped(int i, int size, Wrap wrap) {
+    if (wrap == Wrap::ClampToEdge) return std::clamp(i, 0, size - 1);
+    const int period = wrap == Wrap::Repeat ? size : 2 * size;
+    const int within = ((i % period) + period) % period;
+    return within < size ? within : 2 * size - 1 - within;
+}
+
+// The texture's alpha on its finest level, as shaders/shadow_map.glsl reads it: magnified, linearly or not at all.
+float alphaAt(const TextureImage& image, glm::vec2 uv) {
+    // Far outside, a float no longer tells texels apart.
+    constexpr float farthest = 1 << 20;
+    const glm::vec2 texels = glm::clamp(uv, -farthest, farthest) * glm::vec2(image.width, image.height);
+    const auto texel = [&](int x, int y) {
+        const int i = wrapped(x, image.width, image.wrapU), j = wrapped(y, image.height, image.wrapV);
+        return static_cast<float>(
+            image.rgba[4 * (static_cast<size_t>(j) * static_cast<size_t>(image.width) + static_cast<size_t>(i)) + 3]);
+    };
+    if (image.magnifyNearest)
+        return texel(static_cast<int>(std::floor(texels.x)), static_cast<int>(std::floor(texels.y))) / 255;
+    const glm::vec2 corner = glm::floor(texels - 0.5f), f = texels - 0.5f - corner;
+    const int x = static_cast<int>(corner.x), y = static_cast<int>(corner.y);
+    return glm::mix(glm::mix(texel(x, y), texel(x + 1, y), f.x), glm::mix(texel(x, y + 1), texel(x + 1, y + 1), f.x),
+                    f.y) /
+           255;
+}
+
+[[noreturn]] void fail(RTCError error) {
+    throw InputError(fmt::format("the scene cannot be ray traced: {}",
+                                 error == RTC_ERROR_OUT_OF_MEMORY     ? "out of memory"
+                                 : error == RTC_ERROR_UNSUPPORTED_CPU ? "Embree does not know this processor"
+                                                                      : "Embree failed"));
+}
+
+} // namespace
+
+// Of the lanes that are about to hit a masked triangle, those whose point of it does not exist go on.
+void Casters::passThroughHoles(const RTCFilterFunctionNArguments* arguments) {
+    const Masked& masked = *static_cast<const Masked*>(arguments->geometryUserPtr);
+    const Scene& scene = *masked.scene;
+    const Primitive& primitive = *masked.primitive;
+    const unsigned n = arguments->N;
+    const float least = leastAlpha(*masked.material);
+    for (unsigned lane = 0; lane < n; ++lane) {
+        if (arguments->valid[lane] != -1) continue;
+        const float u = RTCHitN_u(arguments->hit, n, lane), v = RTCHitN_v(arguments->hit, n, lane), w = 1 - u - v;
+        const uint32_t* corner =
+            scene.indices.data() + primitive.firstIndex + 3 * size_t(RTCHitN_primID(arguments->hit, n, lane));
+        const auto interpolated = [&](auto&& of) {
+            return w * of(primitive.firstVertex + corner[0]) + u * of(primitive.firstVertex + corner[1]) +
+                   v * of(primitive.firstVertex + corner[2]);
+        };
+        float alpha = 1;
+        if (masked.material->texture >= 0)
+            alpha = alphaAt(scene.textures[static_cast<size_t>(masked.material->texture)],
+                            interpolated([&](size_t vertex) { return scene.uvs[vertex]; }));
+        if (!scene.colours.empty())
+            alpha *= interpolated([&](size_t vertex) { return static_cast<float>(scene.colours[vertex].a) / 65535; });
+        if (alpha < least) arguments->valid[lane] = 0;
+    }
+}
+
+Casters::Casters(std::shared_ptr<const Scene> scene, const Pose& pose, int threads, Progress* progress)
+    : source_(std::move(scene))
+    , pose_(pose) {
+    Hash hash;
+    std::vector<glm::vec3> posed;
+    const auto drawn = [&](bool masked, auto&& take) {
+        for (size_t n = 0; n < source_->nodes.size(); ++n) {
+            const Node& node = source_->nodes[n];
+            if (node.mesh < 0 || !node.visible) continue;
+            for (const Primitive& primitive : source_->meshes[static_cast<size_t>(node.mesh)].primitives) {
+                const Material& material = source_->materials[static_cast<size_t>(primitive.material)];
+                if (primitive.indexCount == 0 || (material.masked && leastAlpha(material) > 0) != masked) continue;
+                if (progress) progress->report("posing", 0);
+                posedPositions(*source_, pose_, n, primitive, posed);
+                take(primitive, material);
+                positions_.insert(positions_.end(), posed.begin(), posed.end());
+            }
+        }
+    };
+    drawn(false, [&](const Primitive& primitive, const Material&) {
+        const uint32_t first = static_cast<uint32_t>(positions_.size());
+        for (uint32_t i = 0; i < primitive.indexCount; ++i)
+            indices_.push_back(first + source_->indices[primitive.firstIndex + i]);
+    });
+    const size_t opaqueVertices = positions_.size();
+    drawn(true, [&](const Primitive& primitive, const Material& material) {
+        masked_.push_back({source_.get(), &primitive, &material, static_cast<uint32_t>(positions_.size())});
+        hash.addBytes(source_->indices.data() + primitive.firstIndex, primitive.indexCount * sizeof(uint32_t));
+        hash.addBytes(source_->uvs.data() + primitive.firstVertex, primitive.vertexCount * sizeof(glm::vec2));
+        if (!source_->colours.empty())
+            for (uint32_t v = 0; v < primitive.vertexCount; ++v)
+                hash.add(source_->colours[primitive.firstVertex + v].a);
+        hash.add(leastAlpha(material));
+        hash.add(material.texture);
+    });
+    if (!masked_.empty())
+        for (const TextureImage& image : source_->textures) {
+            hash.add(image.width), hash.add(image.height);
+            hash.add(image.wrapU), hash.add(image.wrapV), hash.add(image.magnifyNearest);
+            hash.add(image.rgba);
+        }
+    hash.add(positions_);
+    hash.add(indices_);
+    hash_ = hash.value();
+    positions_.push_back(glm::vec3(0)); // Embree reads the last vertex as 16 bytes
+
+    device_ = rtcNewDevice(fmt::format("threads={}", threads).c_str());
+    if (!device_) fail(rtcGetDeviceError(nullptr));
+    scene_ = rtcNewScene(device_);
+    // No ray may slip through the edge between two triangles.
+    rtcSetSceneFlags(scene_, RTC_SCENE_FLAG_ROBUST);
+    rtcSetSceneBuildQuality(scene_, RTC_BUILD_QUALITY_MEDIUM);
+    if (!indices_.empty()) attach(indices_.data(), indices_.size() / 3, 0, opaqueVertices, nullptr);
+    for (Masked& masked : masked_)
+        attach(source_->indices.data() + masked.primitive->firstIndex, masked.primitive->indexCount / 3,
+               masked.firstVertex, masked.primitive->vertexCount, &masked);
+    if (progress)
+        rtcSetSceneProgressMonitorFunction(
+            scene_, [](void* told, double) { return !static_cast<Progress*>(told)->cancelled(); }, progress);
+    rtcCommitScene(scene_);
+    const RTCError error = rtcGetDeviceError(device_);
+    rtcSetSceneProgressMonitorFunction(scene_, nullptr, nullptr);
+    if (error == RTC_ERROR_NONE) return;
+    rtcReleaseScene(scene_);
+    rtcReleaseDevice(device_);
+    if (error == RTC_ERROR_CANCELLED) throw Cancelled{};
+    fail(error);
+}
+
+void Casters::attach(const uint32_t* indices, size_t triangles, size_t firstVertex, size_t vertices, Masked* masked) {
+    const RTCGeometry geometry = rtcNewGeometry(device_, RTC_GEOMETRY_TYPE_TRIANGLE);
+    rtcSetSharedGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, positions_.data() + firstVertex,
+                               0, sizeof(glm::vec3), vertices);
+    rtcSetSharedGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, indices, 0, 3 * sizeof(uint32_t),
+                               triangles);
+    if (masked) {
+        rtcSetGeometryUserData(geometry, masked);
+        rtcSetGeometryOccludedFilterFunction(geometry, passThroughHoles);
+    }
+    rtcCommitGeometry(geometry);
+    rtcAttachGeometry(scene_, geometry);
+    rtcReleaseGeometry(geometry);
+}
+
+Casters::~Casters() {
+    rtcReleaseScene(scene_);
+    rtcReleaseDevice(device_);
+}
+
+} // namespace penumbra

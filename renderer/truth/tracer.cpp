@@ -1,0 +1,292 @@
+// SPDX-License-Identifier: MIT
+// A pixel's rays go to points of truthReplicates Halton sequences, each shifted by random numbers of its own (Cranley
+// and Patterson 1976). The replicates are independent, so that their spread tells the standard error of their mean,
+// which no single sequence could tell of itself (Owen, Monte Carlo theory, methods and examples, 17.3).
+#include "renderer/truth/tracer.h"
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <limits>
+
+namespace penumbra {
+namespace {
+
+constexpr int lanes = 16;
+constexpr int pointsPerPacket = lanes / truthReplicates; // of each replicate
+constexpr int tile = 8;                                  // pixels along a side
+constexpr size_t piece = 64;                             // points that a thread takes at once
+
+uint64_t mixed(uint64_t x) { // finalisation of splitmix64 (Steele et al. 2014)
+    x += 0x9e3779b97f4a7c15;
+    x = (x ^ (x >> 30)) * 0xbf58476d1ce4e5b9;
+    x = (x ^ (x >> 27)) * 0x94d049bb133111eb;
+    return x ^ (x >> 31);
+}
+
+uint32_t roundedUp(uint32_t rays) { return (rays + lanes - 1) / lanes * lanes; }
+
+} // namespace
+
+PixelClass classify(const AreaLight& light, glm::vec3 p, glm::vec3 n) {
+    // As shaders/resolve.glsl: n·(S − P), or n·l, is greatest and least over the light at its centre's ± spread.
+    const glm::vec2 half = halfSize(light), reach = half * glm::vec2(n);
+    const float spread =
+        light.shape == LightShape::Rectangle ? std::abs(reach.x) + std::abs(reach.y) : glm::length(reach);
+    const bool directional = light.shape == LightShape::Directional;
+    const float centre = directional ? n.z : -glm::dot(n, p);
+    if (centre + spread <= 0) return PixelClass::FacesAway;
+    if (!directional && p.z >= 0) return PixelClass::BehindLight;
+    return centre - spread > 0 ? PixelClass::FacesWholeLight : PixelClass::CutByHorizon;
+}
+
+// Where all replicates agree, their spread says nothing: N rays of one answer are N successes of an unknown chance,
+// whose posterior deviation is about 1 / (N + 2) (Laplace's rule of succession). Between 0 and 1 it is the same order:
+// each replicate knows its share to 1 / n, and that all eight fell on the same multiple leaves about a tenth of that.
+Estimate estimateOf(const std::array<uint16_t, truthReplicates>& hidden, uint32_t rays) {
+    if (rays == 0) return {0, 1};
+    uint32_t sum = 0;
+    uint64_t squares = 0;
+    for (const uint32_t h : hidden) sum += h, squares += h * h;
+    const float psi = static_cast<float>(sum) / static_cast<float>(rays);
+    // Σ (h − mean)², times the number of replicates so that it is a whole number.
+    const uint64_t deviation = squares * truthReplicates - uint64_t(sum) * sum;
+    if (deviation == 0) return {psi, 1 / (static_cast<float>(rays) + 2)};
+    // The root of an unbiased variance is too small on average, by c₄(8) = √(2/7) Γ(4) / Γ(7/2).
+    constexpr double c4 = 0.9650304561;
+    constexpr double k = truthReplicates;
+    const double perReplicate = static_cast<double>(rays) / k;
+    const double variance = static_cast<double>(deviation) / k / (k - 1) / k / (perReplicate * perReplicate);
+    return {psi, static_cast<float>(std::sqrt(variance) / c4)};
+}
+
+Tracer::Tracer(const TruthInput& input, const TruthSettings& settings, const Casters& casters, Crew& crew)
+    : input_(input)
+    , settings_(settings)
+    , casters_(casters)
+    , crew_(crew) {
+    const AreaLight& light = input.light;
+    const glm::mat4 worldFromLight = glm::inverse(lightFromWorld(light));
+    lightX_ = glm::vec3(worldFromLight[0]), lightY_ = glm::vec3(worldFromLight[1]);
+    directional_ = light.shape == LightShape::Directional;
+    round_ = light.shape != LightShape::Rectangle;
+    lightCentre_ = directional_ ? glm::vec3(worldFromLight[2]) : light.position;
+    halfLight_ = halfSize(light);
+    truth_.width = input.view.size.x, truth_.height = input.view.size.y;
+    const size_t pixels = static_cast<size_t>(truth_.width) * static_cast<size_t>(truth_.height);
+    truth_.psi.resize(pixels);
+    truth_.standardError.resize(pixels);
+    truth_.classes.resize(pixels);
+    findPoints();
+    raysForeseen_ = points_.size() * roundedUp(static_cast<uint32_t>(settings.leastSamples));
+    for (uint32_t i = 0; i < points_.size(); ++i) unfinished_.push_back(i);
+}
+
+void Tracer::findPoints() {
+    const View& view = input_.view;
+    const int width = truth_.width, height = truth_.height;
+    const glm::mat4 fromWorld = lightFromWorld(input_.light);
+    const auto largest = [](glm::vec3 v) { return std::max({std::abs(v.x), std::abs(v.y), std::abs(v.z)}); };
+    const auto add = [&](int x, int y) {
+        const size_t pixel = static_cast<size_t>(y) * static_cast<size_t>(width) + static_cast<size_t>(x);
+        const float depth = input_.depth[pixel];
+        PixelClass& kind = truth_.classes[pixel];
+        kind = PixelClass::NoSurface;
+        if (!(depth > 0)) return;
+        const glm::vec3 ray = view.rayCorner + (static_cast<float>(x) + 0.5f) * view.rayDx +
+                              (static_cast<float>(height - 1 - y) + 0.5f) * view.rayDy;
+        const glm::vec3 position = view.eyeWorld + depth * ray, normal = input_.normalWorld[pixel];
+        kind = classify(input_.light, glm::vec3(fromWorld * glm::vec4(position, 1)), glm::mat3(fromWorld) * normal);
+        if (kind == PixelClass::FacesAway) truth_.psi[pixel] = 1;
+        if (kind != PixelClass::FacesWholeLight && kind != PixelClass::CutByHorizon) return;
+
+        // The point must lie above its triangle for every way in which it may be off:
+        //   depth: the rasteriser places vertices on a grid of 1/256 of a pixel, so that the plane is met up to half a
+        //     step to the side: footprint / 512 at right angles to the ray, never more along the normal; doubled
+        //   rounding of the position: eye, depth·ray and their sum, half a unit in the last place (2^-24) each; the
+        //     depth itself comes of a handful of operations; so do the vertices, posed and as Embree subtracts the
+        //     origin from them: 16 roundings of the largest coordinate in play, 2^-20
+        const float footprint = depth * glm::length(view.rayDy);
+        const float coordinate = std::max({largest(position), largest(view.eyeWorld), depth * glm::length(ray)});
+        const float offset = footprint / 256 + coordinate * 0x1p-20f;
+        points_.push_back({position + offset * normal, kind == PixelClass::CutByHorizon ? normal : glm::vec3(0),
+                           static_cast<uint32_t>(pixel)});
+    };
+    for (int top = 0; top < height; top += tile)
+        for (int left = 0; left < width; left += tile)
+            for (int y = top; y < std::min(top + tile, height); ++y)
+                for (int x = left; x < std::min(left + tile, width); ++x) add(x, y);
+}
+
+// The rays of one pixel up to point.wanted; lanes are truthReplicates of the first point, then of the second.
+void Tracer::trace(Point& point) const {
+    alignas(64) float shiftX[lanes], shiftY[lanes];
+    for (int i = 0; i < lanes; ++i) {
+        const auto replicate = static_cast<uint64_t>(i % truthReplicates);
+        const uint64_t bits = mixed(mixed(input_.seed * truthReplicates + replicate) + point.pixel);
+        shiftX[i] = static_cast<float>(bits >> 40) * 0x1p-24f;
+        shiftY[i] = static_cast<float>(bits >> 16 & 0xffffff) * 0x1p-24f;
+    }
+    const bool cut = point.normalWorld != glm::vec3(0);
+    const glm::vec3 o = point.originWorld, n = point.normalWorld;
+    const glm::vec3 centre = directional_ ? lightCentre_ : lightCentre_ - o; // of the light, as a direction
+    const glm::vec3 sideX = lightX_ * halfLight_.x, sideY = lightY_ * halfLight_.y;
+
+    RTCRay16 rays;
+    alignas(64) int valid[lanes];
+    uint16_t hidden[lanes] = {};
+    for (; point.rays < point.wanted; point.rays += lanes) {
+        const uint32_t first = point.rays / truthReplicates;
+        for (int i = 0; i < lanes; ++i) {
+            const uint32_t index = first + static_cast<uint32_t>(i / truthReplicates);
+            float u = haltonX_[index] + shiftX[i], v = haltonY_[index] + shiftY[i];
+            u -= u >= 1 ? 1.0f : 0.0f;
+            v -= v >= 1 ? 1.0f : 0.0f;
+            rays.dir_x[i] = 2 * u - 1;
+            rays.dir_y[i] = 2 * v - 1;
+        }
+        if (round_)
+            for (int i = 0; i < lanes; ++i) {
+                const PlanePoint p = concentricDisk({rays.dir_x[i], rays.dir_y[i]});
+                rays.dir_x[i] = p.x, rays.dir_y[i] = p.y;
+            }
+        for (int i = 0; i < lanes; ++i) {
+            const float x = rays.dir_x[i], y = rays.dir_y[i];
+            rays.org_x[i] = o.x, rays.org_y[i] = o.y, rays.org_z[i] = o.z;
+            rays.dir_x[i] = centre.x + x * sideX.x + y * sideY.x;
+            rays.dir_y[i] = centre.y + x * sideX.y + y * sideY.y;
+            rays.dir_z[i] = centre.z + x * sideX.z + y * sideY.z;
+            rays.tnear[i] = 0;
+            rays.time[i] = 0;
+            rays.mask[i] = ~0u, rays.id[i] = 0, rays.flags[i] = 0;
+            // What lies in the plane of the light itself, such as the pane of a lamp, is not before it.
+            rays.tfar[i] = directional_ ? std::numeric_limits<float>::infinity() : 1 - 0x1p-16f;
+            valid[i] = -1;
+        }
+        if (cut)
+            for (int i = 0; i < lanes; ++i) {
+                const bool above = n.x * rays.dir_x[i] + n.y * rays.dir_y[i] + n.z * rays.dir_z[i] > 0;
+                valid[i] = above ? -1 : 0;
+                hidden[i] = static_cast<uint16_t>(hidden[i] + (above ? 0 : 1));
+            }
+        casters_.occluded(valid, rays);
+        for (int i = 0; i < lanes; ++i) hidden[i] = static_cast<uint16_t>(hidden[i] + (rays.tfar[i] < 0 ? 1 : 0));
+    }
+    for (int i = 0; i < lanes; ++i) {
+        uint16_t& sum = point.hidden[static_cast<size_t>(i % truthReplicates)];
+        sum = static_cast<uint16_t>(sum + hidden[i]);
+    }
+}
+
+bool Tracer::next(Progress* progress) {
+    if (!plan()) return false;
+    uint32_t most = 0;
+    for (const uint32_t i : unfinished_) most = std::max(most, points_[i].wanted);
+    for (uint32_t i = static_cast<uint32_t>(haltonX_.size()); i < most / truthReplicates; ++i) {
+        const glm::vec2 u = haltonPoint(i);
+        haltonX_.push_back(u.x), haltonY_.push_back(u.y);
+    }
+    std::atomic<uint64_t> traced{0};
+    crew_.shareOut(unfinished_.size(), piece, [&](size_t begin, size_t end) {
+        if (progress && progress->cancelled()) return;
+        uint64_t rays = 0;
+        for (size_t i = begin; i < end; ++i) {
+            Point& point = points_[unfinished_[i]];
+            rays += point.wanted - point.rays;
+            trace(point);
+        }
+        traced += rays;
+    });
+    raysTraced_ += traced;
+    if (progress) progress->report("tracing rays", share());
+    estimate();
+    return true;
+}
+
+double Tracer::share() const {
+    return raysForeseen_ == 0 ? 1
+                              : std::min(1.0, static_cast<double>(raysTraced_) /
+                                                  static_cast<double>(std::max(raysForeseen_, raysTraced_)));
+}
+
+void Tracer::estimate() {
+    crew_.shareOut(points_.size(), 4096, [&](size_t begin, size_t end) {
+        for (size_t i = begin; i < end; ++i) {
+            const Point& point = points_[i];
+            const Estimate found = estimateOf(point.hidden, point.rays);
+            truth_.psi[point.pixel] = found.psi;
+            truth_.standardError[point.pixel] = found.standardError;
+        }
+    });
+    truth_.samplesLeast = truth_.samplesMost = points_.empty() ? 0 : static_cast<int>(points_[0].rays);
+    double rays = 0, errors = 0;
+    truth_.penumbraPixels = 0;
+    for (const Point& point : points_) {
+        truth_.samplesLeast = std::min(truth_.samplesLeast, static_cast<int>(point.rays));
+        truth_.samplesMost = std::max(truth_.samplesMost, static_cast<int>(point.rays));
+        rays += point.rays;
+        if (!truth_.isPenumbra(point.pixel)) continue;
+        errors += truth_.standardError[point.pixel];
+        ++truth_.penumbraPixels;
+    }
+    truth_.samplesMean = points_.empty() ? 0 : rays / static_cast<double>(points_.size());
+    truth_.meanPenumbraStandardError = truth_.penumbraPixels ? errors / truth_.penumbraPixels : 0;
+}
+
+// Decides how many rays each pixel gets this round. All get 16, 64 ... up to the least number, so that there is a
+// picture soon. Then those get more whose standard error is above the wanted one. It is judged by the mean variance of
+// the 3x3 pixels around: that of one pixel's eight replicates is itself so uncertain that those which seem good by
+// chance would be left alone; and a pixel whose rays all agree beside one whose rays do not is not certain.
+bool Tracer::plan() {
+    const auto least = roundedUp(static_cast<uint32_t>(settings_.leastSamples));
+    const auto most = std::max(least, roundedUp(static_cast<uint32_t>(settings_.mostSamples)));
+    if (points_.empty()) return false;
+    if (points_[0].rays < least && truth_.samplesLeast < static_cast<int>(least)) {
+        const uint32_t now = static_cast<uint32_t>(truth_.samplesLeast);
+        const uint32_t step = now == 0 ? lanes : std::min(3 * now, 64u);
+        for (Point& point : points_) point.wanted = std::min(now + step, least);
+        return true;
+    }
+    unfinished_.clear();
+    const double wanted = settings_.wantedStandardError;
+    if (truth_.meanPenumbraStandardError < wanted || least == most) return false;
+
+    // The error of n points falls about as n^-3/4 (a discontinuity in two dimensions), so the variance times n^3/2 is
+    // the pixel's own and can be averaged over pixels of different n.
+    const int width = truth_.width, height = truth_.height;
+    std::atomic<uint64_t> foreseen{0};
+    spread_.assign(truth_.psi.size(), -1);
+    crew_.shareOut(points_.size(), 4096, [&](size_t begin, size_t end) {
+        for (size_t i = begin; i < end; ++i) {
+            const Point& point = points_[i];
+            const float psi = truth_.psi[point.pixel], error = truth_.standardError[point.pixel];
+            const bool unanimous = psi == 0 || psi == 1;
+            spread_[point.pixel] = unanimous ? 0 : error * error * std::pow(static_cast<float>(point.rays), 1.5f);
+        }
+    });
+    crew_.shareOut(points_.size(), 4096, [&](size_t begin, size_t end) {
+        for (size_t i = begin; i < end; ++i) {
+            Point& point = points_[i];
+            const int x = static_cast<int>(point.pixel) % width, y = static_cast<int>(point.pixel) / width;
+            float sum = 0, count = 0;
+            for (int v = std::max(y - 1, 0); v <= std::min(y + 1, height - 1); ++v)
+                for (int u = std::max(x - 1, 0); u <= std::min(x + 1, width - 1); ++u) {
+                    const float s =
+                        spread_[static_cast<size_t>(v) * static_cast<size_t>(width) + static_cast<size_t>(u)];
+                    if (s >= 0) sum += s, ++count;
+                }
+            // variance = spread n^-3/2 = wanted²
+            const double enough = std::pow(static_cast<double>(sum / count) / (wanted * wanted), 1 / 1.5);
+            const double now = point.rays;
+            if (enough <= now || point.rays >= most) continue;
+            point.wanted = std::min(most, roundedUp(static_cast<uint32_t>(std::min(enough, 2 * now))));
+            foreseen += static_cast<uint64_t>(std::min(enough, static_cast<double>(most)) - now);
+        }
+    });
+    raysForeseen_ = raysTraced_ + foreseen;
+    for (uint32_t i = 0; i < points_.size(); ++i)
+        if (points_[i].wanted > points_[i].rays) unfinished_.push_back(i);
+    return !unfinished_.empty();
+}
+
+} // namespace penumbra

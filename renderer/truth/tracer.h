@@ -1,0 +1,62 @@
+// SPDX-License-Identifier: MIT
+// Ray traces the truth in rounds, each of which leaves a picture.
+#pragma once
+
+#include "renderer/truth/casters.h"
+#include "renderer/truth/crew.h"
+#include "renderer/truth/truth.h"
+
+#include <array>
+
+namespace penumbra {
+
+class Tracer {
+public:
+    Tracer(const TruthInput& input, const TruthSettings& settings, const Casters& casters, Crew& crew);
+
+    // Traces another round. False: all is done. Throws Cancelled within some milliseconds of being told so.
+    bool next(Progress* progress);
+    // Of all rounds so far.
+    const Truth& truth() const { return truth_; }
+    double share() const; // of all rays, as far as can be foreseen
+
+private:
+    // A pixel from which rays are needed.
+    struct Point {
+        glm::vec3 originWorld;
+        glm::vec3 normalWorld; // for pixels whose horizon cuts the light, else zero
+        uint32_t pixel;
+        uint32_t rays = 0;   // traced so far
+        uint32_t wanted = 0; // to be traced when this round is over
+        std::array<uint16_t, truthReplicates> hidden{};
+    };
+    void findPoints();
+    void trace(Point& point) const;
+    void estimate();
+    bool plan();
+
+    const TruthInput& input_;
+    const TruthSettings settings_;
+    const Casters& casters_;
+    Crew& crew_;
+    glm::vec3 lightCentre_, lightX_, lightY_; // world: a sample is at lightCentre_ + x lightX_ + y lightY_
+    bool directional_ = false, round_ = false;
+    glm::vec2 halfLight_{0};
+    std::vector<float> haltonX_, haltonY_;
+    std::vector<Point> points_;        // in small squares of pixels
+    std::vector<uint32_t> unfinished_; // of points_, this round
+    std::vector<float> spread_;        // by pixel; see plan()
+    Truth truth_;
+    uint64_t raysTraced_ = 0, raysForeseen_ = 0;
+};
+
+// The share of the light that `hidden` of `rays` say is not seen, and its standard error; see tracer.cpp.
+struct Estimate {
+    float psi, standardError;
+};
+Estimate estimateOf(const std::array<uint16_t, truthReplicates>& hidden, uint32_t rays);
+
+// How a surface point stands to a light. `normalLight` is unit.
+PixelClass classify(const AreaLight& light, glm::vec3 positionLight, glm::vec3 normalLight);
+
+} // namespace penumbra
