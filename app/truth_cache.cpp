@@ -4,7 +4,7 @@
 #include "app/file_io.h"
 #include "renderer/core/error.h"
 #include "renderer/core/paths.h"
-#include "renderer/truth/hash.h"
+#include "renderer/core/hash.h"
 
 #include <fmt/format.h>
 

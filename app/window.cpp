@@ -500,6 +500,7 @@ Actions actionsOn(Session& session, const Renderer& renderer, const Window& wind
 } // namespace
 
 int runWindow(Session& session, glm::ivec2 size) {
+    session.progressive = true;
     const Glfw glfw;
     Window window(size);
     Renderer renderer;

@@ -131,7 +131,7 @@ Frame buildFrame(Flow& flow, const Session& session, const SceneState& state, co
     pose(flow, state, geometry);
     const Surfaces surfaces = drawSurfaces(flow, view, state, geometry, lastClipFromWorld);
     const Inputs inputs{view,          session.light, surfaces.buffer, geometry, state.poseVersion(), state.occluders(),
-                        session.frame, session.seed};
+                        session.frame, session.seed, session.progressive};
     const Scope instance{.instance = {}, .owner = session.techniques.card().id};
     const Image shadow = session.techniques.technique().build(flow, instance, inputs);
     const bool lit = session.display.show == Show::Lit;

@@ -35,6 +35,7 @@ struct Inputs {
     std::span<const Occluder> occluders;
     uint32_t frame; // index of the frame since the last reset, for sequences
     uint32_t seed;
+    bool progressive = false; // the frame may show a part of the work; later ones do the rest
 };
 
 } // namespace penumbra

@@ -78,6 +78,7 @@ struct Session {
     double timeStep = 0; // how far it moves from frame to frame [s]; 0: a still scene
     uint32_t frame = 0;  // frames since the last reset
     uint32_t seed = 0;
+    bool progressive = false; // techniques may spread long work over frames: for a window that must stay alive
     glm::ivec2 size{1280, 720};
     uint64_t textureLimit = uint64_t{4} << 30; // bytes
 

@@ -29,8 +29,12 @@ std::string_view stageName(Stage stage) {
 
 void Flow::begin() {
     lastImages_.clear();
-    for (const ImageNode& image : images_)
-        if (image.kept) lastImages_.push_back({image.label, image.spec});
+    for (const ImageNode& image : images_) {
+        if (!image.kept) continue;
+        Remembered& last = lastImages_.emplace_back(Remembered{image.label, image.spec, 0, 1});
+        for (const PastNode& past : pasts_)
+            if (past.label == image.label) last.key = past.key, last.age = past.age + 1;
+    }
     passes_.clear();
     images_.clear();
     pasts_.clear();
@@ -115,14 +119,19 @@ Flow::Outputs Flow::pass(Scope scope, const PassSpec& spec) {
     return outputs;
 }
 
-PastImage Flow::past(Scope scope, const ImageSpec& spec) {
+PastImage Flow::past(Scope scope, const ImageSpec& spec, uint64_t key) {
     const int label = intern(scope, spec.name);
     if (std::find(kept_.begin(), kept_.end(), label) == kept_.end()) kept_.push_back(label);
-    const bool valid = std::any_of(lastImages_.begin(), lastImages_.end(), [&](const Remembered& last) {
-        return last.label == label && last.spec.sameStorage(spec);
+    const auto last = std::find_if(lastImages_.begin(), lastImages_.end(), [&](const Remembered& image) {
+        return image.label == label && image.spec.sameStorage(spec) && image.key == key;
     });
-    pasts_.push_back({spec, label, valid});
-    return PastImage(static_cast<int>(pasts_.size()) - 1, valid);
+    const int age = last == lastImages_.end() ? 0 : last->age;
+    pasts_.push_back({spec, label, key, age});
+    return PastImage(static_cast<int>(pasts_.size()) - 1, age);
+}
+
+bool Flow::living() const {
+    return std::any_of(pasts_.begin(), pasts_.end(), [](const PastNode& past) { return !past.finished; });
 }
 
 void Flow::forget() {

@@ -44,14 +44,15 @@ private:
 class PastImage {
 public:
     bool operator==(const PastImage&) const = default;
-    int index() const { return index_; }  // of the flow's pasts()
-    bool valid() const { return valid_; } // false: there was none, it reads as zero
+    int index() const { return index_; }    // of the flow's pasts()
+    bool valid() const { return age_ > 0; } // false: there was none, it reads as zero
+    int age() const { return age_; }        // for how many frames in a row there has been one
 
 private:
     friend class Flow;
-    PastImage(int index, bool valid) : index_(index), valid_(valid) {}
+    PastImage(int index, int age) : index_(index), age_(age) {}
     int index_;
-    bool valid_;
+    int age_;
 };
 
 enum class Sampling : uint8_t {
@@ -174,7 +175,9 @@ public:
     struct PastNode {
         ImageSpec spec;
         int label;
-        bool valid;
+        uint64_t key;
+        int age;
+        bool finished = false;
     };
     using Writes = FixedVector<ImageSpec, 5>;
 
@@ -194,8 +197,13 @@ public:
     };
     Outputs pass(Scope scope, const PassSpec& spec);
 
-    // Last frame's image of this label and storage, or zeros. Asking for it makes the flow keep it from now on.
-    PastImage past(Scope scope, const ImageSpec& spec);
+    // Last frame's image of this label, storage and key, or zeros. Asking for it makes the flow keep it from now on.
+    // The key stands for all that the image must have in common with this frame, such as the view.
+    PastImage past(Scope scope, const ImageSpec& spec, uint64_t key = 0);
+    // Nothing new will come of this image until its key is another.
+    void finish(PastImage image) { pasts_[static_cast<size_t>(image.index())].finished = true; }
+    // Whether another frame of the same inputs may look different.
+    bool living() const;
     // Forgets the past, so that the next frame is a first one.
     void forget();
 
@@ -234,6 +242,8 @@ private:
     struct Remembered {
         int label;
         ImageSpec spec;
+        uint64_t key;
+        int age;
     };
     int intern(Scope scope, std::string_view name);
 

@@ -250,7 +250,7 @@ void FlowRunner::begin(const Flow& flow, Timing timing) {
     }
     for (const Flow::ImageNode& node : flow.images()) allocate(flow, node.label, turnOf(node), node.spec, false);
     for (const Flow::PastNode& node : flow.pasts())
-        allocate(flow, node.label, static_cast<int>((frame_ + 1) % 2), node.spec, !node.valid);
+        allocate(flow, node.label, static_cast<int>((frame_ + 1) % 2), node.spec, node.age == 0);
 
     careful_ = std::max(milliseconds_, timer_.newest().milliseconds) > dearFrame;
     for (const Flow::PassNode& pass : flow.passes())

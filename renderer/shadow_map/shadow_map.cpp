@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "renderer/shadow_map/shadow_map.h"
 
-#include "renderer/core/technique.h"
-
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -225,14 +223,16 @@ Image resolve(Flow& flow, Scope scope, const Inputs& inputs, const Resolver& res
     Compute work{resolver.shader,
                  {{"DIRECTIONAL", inputs.light.shape == LightShape::Directional ? 1 : 0},
                   {"ROUND", inputs.light.shape == LightShape::Rectangle ? 0 : 1}}};
+    for (const Define& define : resolver.defines) work.defines.push_back(define);
     if (resolver.table > 0) work.defines.push_back({"TABLE", resolver.table});
-    PassSpec pass{.stage = Stage::Resolve,
-                  .name = "resolve",
-                  .work = work,
-                  .reads = {{"depth", inputs.geometryBuffer.depth}, {"normal", inputs.geometryBuffer.normal}},
-                  .writes = {{"shadow", Format::R32F, {inputs.view.size.x, inputs.view.size.y}, shadowChannels()}},
-                  .constants = resolver.constants,
-                  .parameters = &parameters};
+    PassSpec pass{
+        .stage = Stage::Resolve,
+        .name = resolver.pass,
+        .work = work,
+        .reads = {{"depth", inputs.geometryBuffer.depth}, {"normal", inputs.geometryBuffer.normal}},
+        .writes = {{resolver.writes, Format::R32F, {inputs.view.size.x, inputs.view.size.y}, resolver.channels}},
+        .constants = resolver.constants,
+        .parameters = &parameters};
     for (const Read& read : reads) pass.reads.push_back(read);
     return flow.pass(scope, pass);
 }

@@ -2,6 +2,7 @@
 // Depth as seen from a point of the light: how a map is described, fitted to the scene, drawn and looked up.
 #pragma once
 
+#include "renderer/core/technique.h"
 #include "renderer/inputs.h"
 #include "renderer/shared.h"
 
@@ -133,8 +134,12 @@ struct Resolver {
     std::string_view shader;
     Constants constants;
     int table = 0;
+    // What it writes: R32F of the view's size, ψ as "shadow" unless stated otherwise.
+    std::string_view pass = "resolve", writes = "shadow";
+    std::span<const Channel> channels = shadowChannels();
+    Defines defines = {};
 };
-// Appends its pass: reads depth, normal and `reads`, writes ψ as "shadow".
+// Appends its pass: reads depth, normal and `reads`.
 Image resolve(Flow& flow, Scope scope, const Inputs& inputs, const Resolver& resolver,
               std::initializer_list<Read> reads, const ParameterSet& parameters);
 

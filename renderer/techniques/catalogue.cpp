@@ -10,7 +10,8 @@
     X(none)                                                                                                            \
     X(hard)                                                                                                            \
     X(pcf)                                                                                                             \
-    X(pcss)
+    X(pcss)                                                                                                            \
+    X(lightSampling)
 
 namespace penumbra {
 

@@ -3,7 +3,7 @@
 
 #include "renderer/core/error.h"
 #include "renderer/scene/posing.h"
-#include "renderer/truth/hash.h"
+#include "renderer/core/hash.h"
 
 #include <fmt/format.h>
 

@@ -2,7 +2,7 @@
 #include "renderer/truth/truth.h"
 
 #include "renderer/renderer.h"
-#include "renderer/truth/hash.h"
+#include "renderer/core/hash.h"
 #include "renderer/truth/tracer.h"
 
 #include <fmt/format.h>
