@@ -2,8 +2,8 @@
 #include "renderer/truth/casters.h"
 
 #include "renderer/core/error.h"
-#include "renderer/scene/posing.h"
 #include "renderer/core/hash.h"
+#include "renderer/scene/posing.h"
 
 #include <fmt/format.h>
 

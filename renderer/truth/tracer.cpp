@@ -28,6 +28,24 @@ uint32_t roundedUp(uint32_t rays) { return (rays + lanes - 1) / lanes * lanes; }
 
 } // namespace
 
+glm::vec3 positionWorld(const TruthInput& input, size_t pixel) {
+    const View& view = input.view;
+    const auto width = static_cast<size_t>(view.size.x);
+    const float x = static_cast<float>(pixel % width) + 0.5f;
+    const float y = static_cast<float>(view.size.y) - static_cast<float>(pixel / width) - 0.5f; // row 0 is the top
+    return view.eyeWorld + input.depth[pixel] * (view.rayCorner + x * view.rayDx + y * view.rayDy);
+}
+
+std::vector<PixelClass> classesOf(const TruthInput& input) {
+    const glm::mat4 fromWorld = lightFromWorld(input.light);
+    std::vector<PixelClass> classes(input.depth.size(), PixelClass::NoSurface);
+    for (size_t i = 0; i < classes.size(); ++i)
+        if (input.depth[i] > 0)
+            classes[i] = classify(input.light, glm::vec3(fromWorld * glm::vec4(positionWorld(input, i), 1)),
+                                  glm::mat3(fromWorld) * input.normalWorld[i]);
+    return classes;
+}
+
 PixelClass classify(const AreaLight& light, glm::vec3 p, glm::vec3 n) {
     // As shaders/resolve.glsl: n·(S − P), or n·l, is greatest and least over the light at its centre's ± spread.
     const glm::vec2 half = halfSize(light), reach = half * glm::vec2(n);
@@ -76,27 +94,18 @@ Tracer::Tracer(const TruthInput& input, const TruthSettings& settings, const Cas
     const size_t pixels = static_cast<size_t>(truth_.width) * static_cast<size_t>(truth_.height);
     truth_.psi.resize(pixels);
     truth_.standardError.resize(pixels);
-    truth_.classes.resize(pixels);
+    truth_.classes = classesOf(input);
     findPoints();
     raysForeseen_ = points_.size() * roundedUp(static_cast<uint32_t>(settings.leastSamples));
     for (uint32_t i = 0; i < points_.size(); ++i) unfinished_.push_back(i);
 }
 
+// Points in small squares of pixels, whose rays are near to each other.
 void Tracer::findPoints() {
     const View& view = input_.view;
-    const int width = truth_.width, height = truth_.height;
-    const glm::mat4 fromWorld = lightFromWorld(input_.light);
     const auto largest = [](glm::vec3 v) { return std::max({std::abs(v.x), std::abs(v.y), std::abs(v.z)}); };
-    const auto add = [&](int x, int y) {
-        const size_t pixel = static_cast<size_t>(y) * static_cast<size_t>(width) + static_cast<size_t>(x);
-        const float depth = input_.depth[pixel];
-        PixelClass& kind = truth_.classes[pixel];
-        kind = PixelClass::NoSurface;
-        if (!(depth > 0)) return;
-        const glm::vec3 ray = view.rayCorner + (static_cast<float>(x) + 0.5f) * view.rayDx +
-                              (static_cast<float>(height - 1 - y) + 0.5f) * view.rayDy;
-        const glm::vec3 position = view.eyeWorld + depth * ray, normal = input_.normalWorld[pixel];
-        kind = classify(input_.light, glm::vec3(fromWorld * glm::vec4(position, 1)), glm::mat3(fromWorld) * normal);
+    const auto add = [&](uint32_t pixel) {
+        const PixelClass kind = truth_.classes[pixel];
         if (kind == PixelClass::FacesAway) truth_.psi[pixel] = 1;
         if (kind != PixelClass::FacesWholeLight && kind != PixelClass::CutByHorizon) return;
 
@@ -106,16 +115,19 @@ void Tracer::findPoints() {
         //   rounding of the position: eye, depth·ray and their sum, half a unit in the last place (2^-24) each; the
         //     depth itself comes of a handful of operations; so do the vertices, posed and as Embree subtracts the
         //     origin from them: 16 roundings of the largest coordinate in play, 2^-20
-        const float footprint = depth * glm::length(view.rayDy);
-        const float coordinate = std::max({largest(position), largest(view.eyeWorld), depth * glm::length(ray)});
+        const glm::vec3 position = positionWorld(input_, pixel), normal = input_.normalWorld[pixel];
+        const float footprint = input_.depth[pixel] * glm::length(view.rayDy);
+        const float coordinate =
+            std::max({largest(position), largest(view.eyeWorld), glm::distance(position, view.eyeWorld)});
         const float offset = footprint / 256 + coordinate * 0x1p-20f;
-        points_.push_back({position + offset * normal, kind == PixelClass::CutByHorizon ? normal : glm::vec3(0),
-                           static_cast<uint32_t>(pixel)});
+        points_.push_back(
+            {position + offset * normal, kind == PixelClass::CutByHorizon ? normal : glm::vec3(0), pixel});
     };
+    const int width = truth_.width, height = truth_.height;
     for (int top = 0; top < height; top += tile)
         for (int left = 0; left < width; left += tile)
             for (int y = top; y < std::min(top + tile, height); ++y)
-                for (int x = left; x < std::min(left + tile, width); ++x) add(x, y);
+                for (int x = left; x < std::min(left + tile, width); ++x) add(static_cast<uint32_t>(y * width + x));
 }
 
 // The rays of one pixel up to point.wanted; lanes are truthReplicates of the first point, then of the second.

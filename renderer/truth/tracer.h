@@ -56,6 +56,10 @@ struct Estimate {
 };
 Estimate estimateOf(const std::array<uint16_t, truthReplicates>& hidden, uint32_t rays);
 
+// The surface point that a pixel shows [m].
+glm::vec3 positionWorld(const TruthInput& input, size_t pixel);
+
+std::vector<PixelClass> classesOf(const TruthInput& input);
 // How a surface point stands to a light. `normalLight` is unit.
 PixelClass classify(const AreaLight& light, glm::vec3 positionLight, glm::vec3 normalLight);
 

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "renderer/truth/truth.h"
 
-#include "renderer/renderer.h"
 #include "renderer/core/hash.h"
+#include "renderer/renderer.h"
 #include "renderer/truth/tracer.h"
 
 #include <fmt/format.h>

@@ -159,6 +159,7 @@ Session session(std::shared_ptr<const Scene> scene, std::string_view technique) 
     s.light = {.position = {0, 4, 0}, .target = {0, 0, 0}, .size = {1, 1}};
     s.display.show = Show::Shadow;
     s.size = {64, 48};
+    s.progressive = true; // a first frame
     s.techniques.choose(technique);
     return s;
 }

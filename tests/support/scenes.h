@@ -38,7 +38,8 @@ private:
 // box stands beside it.
 std::shared_ptr<Scene> wavingScene();
 
-// A session of a technique at its defaults: small picture, small map, light 1x1 m at (0, 4, 0) facing down.
+// A session of a technique at its defaults: small picture, small map, light 1x1 m at (0, 4, 0) facing
+// down; progressive, as in the window.
 Session session(std::shared_ptr<const Scene> scene, std::string_view technique = "hard");
 
 struct ShadowImage {

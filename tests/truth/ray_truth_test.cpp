@@ -19,13 +19,6 @@ TruthInput inputOf(const Session& session) {
     return readTruthInput(renderer(), session);
 }
 
-glm::vec3 positionOf(const TruthInput& input, size_t pixel) {
-    const View& view = input.view;
-    const int x = static_cast<int>(pixel) % view.size.x, y = static_cast<int>(pixel) / view.size.x;
-    return view.eyeWorld + input.depth[pixel] * (view.rayCorner + (static_cast<float>(x) + 0.5f) * view.rayDx +
-                                                 (static_cast<float>(view.size.y - 1 - y) + 0.5f) * view.rayDy);
-}
-
 TruthSettings exactly(int samples) { return {.leastSamples = samples, .mostSamples = samples}; }
 
 bool same(const std::vector<float>& a, const std::vector<float>& b) {
@@ -54,7 +47,7 @@ TEST_CASE("rays meet the closed forms within 0.01 everywhere with 4096 samples")
         double most = 0;
         int pixels = 0, penumbra = 0;
         for (size_t i = 0; i < truth.psi.size(); ++i) {
-            const glm::vec3 position = positionOf(input, i);
+            const glm::vec3 position = positionWorld(input, i);
             if (truth.classes[i] != PixelClass::FacesWholeLight || !onKnownFloor(position)) continue;
             const double expected = form.psi(position);
             most = std::max(most, std::abs(truth.psi[i] - expected));
@@ -80,7 +73,7 @@ TEST_CASE("the standard error says how far off the truth is") {
             double squares = 0, errors = 0, claimed = 0;
             int pixels = 0;
             for (size_t i = 0; i < truth.psi.size(); ++i) {
-                const glm::vec3 position = positionOf(input, i);
+                const glm::vec3 position = positionWorld(input, i);
                 if (truth.classes[i] != PixelClass::FacesWholeLight || !onKnownFloor(position)) continue;
                 const double expected = form.psi(position);
                 if (expected < 0.01 || expected > 0.99) continue;
@@ -126,7 +119,7 @@ TEST_CASE("refinement ends below the wanted error, and goes where the error is")
     double squares = 0;
     int pixels = 0;
     for (size_t i = 0; i < fine.psi.size(); ++i) {
-        const glm::vec3 position = positionOf(input, i);
+        const glm::vec3 position = positionWorld(input, i);
         if (fine.classes[i] != PixelClass::FacesWholeLight || !onKnownFloor(position) || !fine.isPenumbra(i)) continue;
         squares += std::pow(fine.psi[i] - spherePsi(position), 2);
         ++pixels;
@@ -215,7 +208,7 @@ TEST_CASE("a ball shadows the floor, not its own lit side; a closed lid lets not
     double most = 0;
     int pixels = 0;
     for (size_t i = 0; i < truth.psi.size(); ++i) {
-        if (truth.classes[i] != PixelClass::FacesWholeLight || positionOf(input, i).y < 5) continue;
+        if (truth.classes[i] != PixelClass::FacesWholeLight || positionWorld(input, i).y < 5) continue;
         most = std::max<double>(most, truth.psi[i]);
         ++pixels;
     }
@@ -245,7 +238,7 @@ TEST_CASE("pixels are told apart by how they stand to the light") {
     CHECK(count(truth, PixelClass::FacesAway) == 0);
     int cut = 0;
     for (size_t i = 0; i < truth.psi.size(); ++i) {
-        const glm::vec3 position = positionOf(input, i), normal = input.normalWorld[i];
+        const glm::vec3 position = positionWorld(input, i), normal = input.normalWorld[i];
         if (truth.classes[i] == PixelClass::NoSurface) CHECK(truth.psi[i] == 0);
         if (truth.classes[i] == PixelClass::CutByHorizon && std::abs(normal.x) > 0.99f) {
             // The side at x = 0.4 sees the light's x in [0.4, 2] of [−2, 2].
@@ -278,7 +271,7 @@ TEST_CASE("a directional light's edge is a disk's share") {
     double most = 0;
     int pixels = 0;
     for (size_t i = 0; i < truth.psi.size(); ++i) {
-        const glm::vec3 position = positionOf(input, i);
+        const glm::vec3 position = positionWorld(input, i);
         if (truth.classes[i] != PixelClass::FacesWholeLight || !onKnownFloor(position)) continue;
         const double h = position.x < 0 ? 5.99 : 6; // of the slab's edge that a ray leaves last
         const double t = std::clamp(position.x / (h * std::tan(glm::radians(5.0))), -1.0, 1.0);
@@ -313,7 +306,7 @@ void checkMask(const std::shared_ptr<const Scene>& scene, bool (*hides)(float u,
     const Truth truth = traceTruth(input, exactly(16));
     int hidden = 0, lit = 0, wrong = 0;
     for (size_t i = 0; i < truth.psi.size(); ++i) {
-        const glm::vec3 p = positionOf(input, i);
+        const glm::vec3 p = positionWorld(input, i);
         if (truth.classes[i] != PixelClass::FacesWholeLight || std::abs(p.y) > 1e-3f) continue;
         const float u = (p.x + 4) / 8, v = (p.z + 4) / 8, step = 2e-3f;
         const bool expected = hides(u, v);
