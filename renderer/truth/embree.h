@@ -10,7 +10,8 @@
 
 namespace penumbra {
 
-// Sets tfar to −∞ in the lanes of `rays` that hit something; `valid` is −1 in lanes that count, else 0.
+// Sets tfar to −∞ in the lanes of `rays` that hit something; `valid` is −1 in lanes that count, else 0;
+// what becomes of those is undefined.
 inline void occluded16(RTCScene scene, const int* valid, RTCRay16& rays) {
 #if RTC_VERSION_MAJOR >= 4
     RTCOccludedArguments arguments;

@@ -182,7 +182,8 @@ void Tracer::trace(Point& point) const {
                 hidden[i] = static_cast<uint16_t>(hidden[i] + (above ? 0 : 1));
             }
         casters_.occluded(valid, rays);
-        for (int i = 0; i < lanes; ++i) hidden[i] = static_cast<uint16_t>(hidden[i] + (rays.tfar[i] < 0 ? 1 : 0));
+        for (int i = 0; i < lanes; ++i)
+            hidden[i] = static_cast<uint16_t>(hidden[i] + (valid[i] && rays.tfar[i] < 0 ? 1 : 0));
     }
     for (int i = 0; i < lanes; ++i) {
         uint16_t& sum = point.hidden[static_cast<size_t>(i % truthReplicates)];

@@ -114,6 +114,7 @@ TEST_CASE("points of the light below the horizon are hidden") {
     // The side of a box at x = 0.4 sees the light's x in [0.4, 2] of [−2, 2].
     Session s = session(SceneBuilder().box({-0.4f, -0.4f, -0.4f}, {0.4f, 0.4f, 0.4f}).build(), "light-sampling");
     s.progressive = false;
+    s.size = {96, 72};
     s.light.size = {4, 4};
     s.techniques.parameters().at("samples").set(256);
     s.techniques.parameters().at("map-size").set(64);

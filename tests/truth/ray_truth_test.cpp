@@ -113,7 +113,7 @@ TEST_CASE("refinement ends below the wanted error, and goes where the error is")
     CHECK(fine.meanPenumbraStandardError > 0.001); // and soon after it got there
     CHECK(fine.samplesLeast == 256);
     CHECK(fine.samplesMost > 512);
-    CHECK(fine.samplesMean < 512);
+    CHECK(fine.samplesMean < 0.25 * fine.samplesMost);
     CHECK(fine.complete);
 
     double squares = 0;
@@ -230,6 +230,7 @@ TEST_CASE("pixels are told apart by how they stand to the light") {
     // A box: its top faces the light, its sides are cut by the light's overhang, its bottom faces away.
     Session s = session(SceneBuilder().box({-0.4f, -0.4f, -0.4f}, {0.4f, 0.4f, 0.4f}).build());
     s.light.size = {4, 4};
+    s.size = {128, 96};
     const TruthInput input = inputOf(s);
     const Truth truth = traceTruth(input, exactly(1024));
     CHECK(count(truth, PixelClass::NoSurface) > 100);
