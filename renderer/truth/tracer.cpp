@@ -13,9 +13,8 @@ namespace penumbra {
 namespace {
 
 constexpr int lanes = 16;
-constexpr int pointsPerPacket = lanes / truthReplicates; // of each replicate
-constexpr int tile = 8;                                  // pixels along a side
-constexpr size_t piece = 64;                             // points that a thread takes at once
+constexpr int tile = 8;      // pixels along a side
+constexpr size_t piece = 64; // points that a thread takes at once
 
 uint64_t mixed(uint64_t x) { // finalisation of splitmix64 (Steele et al. 2014)
     x += 0x9e3779b97f4a7c15;
@@ -130,60 +129,80 @@ void Tracer::findPoints() {
                 for (int x = left; x < std::min(left + tile, width); ++x) add(static_cast<uint32_t>(y * width + x));
 }
 
-// The rays of one pixel up to point.wanted; lanes are truthReplicates of the first point, then of the second.
-void Tracer::trace(Point& point) const {
+namespace {
+
+// What the directions of a packet are made of; lanes are truthReplicates of one point of the sequence, then of the
+// next.
+struct Aim {
     alignas(64) float shiftX[lanes], shiftY[lanes];
+    glm::vec3 centre, sideX, sideY; // a point of the light is in the direction centre + x sideX + y sideY
+};
+
+// Aims a packet at the points from `haltonX`, `haltonY` on, as scene/light.h's lightPoint() has them.
+template <bool round> inline void aimAt(const Aim& aim, const float* haltonX, const float* haltonY, RTCRay16& rays) {
+    for (int i = 0; i < lanes; ++i) {
+        float u = haltonX[i / truthReplicates] + aim.shiftX[i], v = haltonY[i / truthReplicates] + aim.shiftY[i];
+        u -= u >= 1 ? 1.0f : 0.0f;
+        v -= v >= 1 ? 1.0f : 0.0f;
+        PlanePoint p{2 * u - 1, 2 * v - 1};
+        if constexpr (round) p = concentricDisk(p);
+        rays.dir_x[i] = aim.centre.x + p.x * aim.sideX.x + p.y * aim.sideY.x;
+        rays.dir_y[i] = aim.centre.y + p.x * aim.sideX.y + p.y * aim.sideY.y;
+        rays.dir_z[i] = aim.centre.z + p.x * aim.sideX.z + p.y * aim.sideY.z;
+    }
+}
+
+// Compiled for eight lanes at once too, for processors that have them. The results are the same to the last bit. The
+// sanitizers start later than the choice is made.
+#if defined(__x86_64__) && defined(__GNUC__) && !defined(__clang__) && !defined(__SANITIZE_ADDRESS__)
+#define WIDE_TOO __attribute__((target_clones("avx2", "default")))
+#else
+#define WIDE_TOO
+#endif
+WIDE_TOO void aimAtRectangle(const Aim& aim, const float* haltonX, const float* haltonY, RTCRay16& rays) {
+    aimAt<false>(aim, haltonX, haltonY, rays);
+}
+WIDE_TOO void aimAtDisk(const Aim& aim, const float* haltonX, const float* haltonY, RTCRay16& rays) {
+    aimAt<true>(aim, haltonX, haltonY, rays);
+}
+
+} // namespace
+
+// The rays of one pixel up to point.wanted.
+void Tracer::trace(Point& point) const {
+    const glm::vec3 o = point.originWorld, n = point.normalWorld;
+    const bool cut = n != glm::vec3(0);
+    Aim aim;
+    aim.centre = directional_ ? lightCentre_ : lightCentre_ - o;
+    aim.sideX = lightX_ * halfLight_.x, aim.sideY = lightY_ * halfLight_.y;
+    // What lies in the plane of the light itself, such as the pane of a lamp, is not before it.
+    const float farthest = directional_ ? std::numeric_limits<float>::infinity() : 1 - 0x1p-16f;
+    RTCRay16 rays;
+    alignas(64) int valid[lanes];
     for (int i = 0; i < lanes; ++i) {
         const auto replicate = static_cast<uint64_t>(i % truthReplicates);
         const uint64_t bits = mixed(mixed(input_.seed * truthReplicates + replicate) + point.pixel);
-        shiftX[i] = static_cast<float>(bits >> 40) * 0x1p-24f;
-        shiftY[i] = static_cast<float>(bits >> 16 & 0xffffff) * 0x1p-24f;
+        aim.shiftX[i] = static_cast<float>(bits >> 40) * 0x1p-24f;
+        aim.shiftY[i] = static_cast<float>(bits >> 16 & 0xffffff) * 0x1p-24f;
+        rays.org_x[i] = o.x, rays.org_y[i] = o.y, rays.org_z[i] = o.z;
+        rays.tnear[i] = rays.time[i] = 0;
+        rays.mask[i] = ~0u, rays.id[i] = rays.flags[i] = 0;
+        valid[i] = -1;
     }
-    const bool cut = point.normalWorld != glm::vec3(0);
-    const glm::vec3 o = point.originWorld, n = point.normalWorld;
-    const glm::vec3 centre = directional_ ? lightCentre_ : lightCentre_ - o; // of the light, as a direction
-    const glm::vec3 sideX = lightX_ * halfLight_.x, sideY = lightY_ * halfLight_.y;
 
-    RTCRay16 rays;
-    alignas(64) int valid[lanes];
-    uint16_t hidden[lanes] = {};
+    int hidden[lanes] = {};
     for (; point.rays < point.wanted; point.rays += lanes) {
         const uint32_t first = point.rays / truthReplicates;
-        for (int i = 0; i < lanes; ++i) {
-            const uint32_t index = first + static_cast<uint32_t>(i / truthReplicates);
-            float u = haltonX_[index] + shiftX[i], v = haltonY_[index] + shiftY[i];
-            u -= u >= 1 ? 1.0f : 0.0f;
-            v -= v >= 1 ? 1.0f : 0.0f;
-            rays.dir_x[i] = 2 * u - 1;
-            rays.dir_y[i] = 2 * v - 1;
-        }
-        if (round_)
-            for (int i = 0; i < lanes; ++i) {
-                const PlanePoint p = concentricDisk({rays.dir_x[i], rays.dir_y[i]});
-                rays.dir_x[i] = p.x, rays.dir_y[i] = p.y;
-            }
-        for (int i = 0; i < lanes; ++i) {
-            const float x = rays.dir_x[i], y = rays.dir_y[i];
-            rays.org_x[i] = o.x, rays.org_y[i] = o.y, rays.org_z[i] = o.z;
-            rays.dir_x[i] = centre.x + x * sideX.x + y * sideY.x;
-            rays.dir_y[i] = centre.y + x * sideX.y + y * sideY.y;
-            rays.dir_z[i] = centre.z + x * sideX.z + y * sideY.z;
-            rays.tnear[i] = 0;
-            rays.time[i] = 0;
-            rays.mask[i] = ~0u, rays.id[i] = 0, rays.flags[i] = 0;
-            // What lies in the plane of the light itself, such as the pane of a lamp, is not before it.
-            rays.tfar[i] = directional_ ? std::numeric_limits<float>::infinity() : 1 - 0x1p-16f;
-            valid[i] = -1;
-        }
+        (round_ ? aimAtDisk : aimAtRectangle)(aim, haltonX_.data() + first, haltonY_.data() + first, rays);
+        for (int i = 0; i < lanes; ++i) rays.tfar[i] = farthest;
         if (cut)
             for (int i = 0; i < lanes; ++i) {
                 const bool above = n.x * rays.dir_x[i] + n.y * rays.dir_y[i] + n.z * rays.dir_z[i] > 0;
                 valid[i] = above ? -1 : 0;
-                hidden[i] = static_cast<uint16_t>(hidden[i] + (above ? 0 : 1));
+                hidden[i] += above ? 0 : 1;
             }
         casters_.occluded(valid, rays);
-        for (int i = 0; i < lanes; ++i)
-            hidden[i] = static_cast<uint16_t>(hidden[i] + (valid[i] && rays.tfar[i] < 0 ? 1 : 0));
+        for (int i = 0; i < lanes; ++i) hidden[i] += rays.tfar[i] < 0 ? valid[i] & 1 : 0;
     }
     for (int i = 0; i < lanes; ++i) {
         uint16_t& sum = point.hidden[static_cast<size_t>(i % truthReplicates)];

@@ -52,15 +52,14 @@ public:
 };
 
 struct TruthSettings {
-    int leastSamples = 256;             // rays a pixel, at least; rounded up to a multiple of truthStep
+    int leastSamples = 256;             // rays a pixel, at least; rounded up to a multiple of 16
     int mostSamples = 16384;            // and at most; equal: the same for every pixel
     double wantedStandardError = 0.001; // it ends when the mean over penumbra pixels is below this
     int threads = 0;                    // 0: one per core
     bool background = false;            // threads of low priority, that leave the cores to whoever draws
     TruthCache* cache = nullptr;        // asked first, and given what was traced; app/truth_cache.h has one on disk
 };
-inline constexpr int truthReplicates = 8;              // independently shifted Halton sequences a pixel
-inline constexpr int truthStep = truthReplicates * 16; // rays a pixel that are traced together
+inline constexpr int truthReplicates = 8; // independently shifted Halton sequences a pixel
 
 struct Truth {
     int width = 0, height = 0;        // row 0 at the top, as Renderer::Pixels has it

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 // How long the truth takes. Not part of the suite: test-truth "[figures]"; PENUMBRA_FIGURE_SCENE names another scene.
+#include "renderer/truth/casters.h"
 #include "renderer/truth/truth.h"
 #include "tests/catch.h"
 #include "tests/support/scenes.h"
@@ -34,6 +35,13 @@ TEST_CASE("what the truth costs at 640x480", "[.][figures]") {
     renderer().render(s);
     const TruthInput input = readTruthInput(renderer(), s);
 
+    {
+        const Clock::time_point start = Clock::now();
+        const double processor = processorSeconds();
+        const Casters casters(input.scene, input.pose, 2, nullptr);
+        WARN("posing, hashing and the hierarchy: " << since(start) << " s, " << processorSeconds() - processor
+                                                   << " s of processor time");
+    }
     for (int run = 0; run < 3; ++run) {
         const Clock::time_point start = Clock::now();
         const double processor = processorSeconds();
