@@ -115,11 +115,13 @@ LightViewBlock lightView(const Inputs& inputs, const ShadowMapDescription& descr
     const Fit fit = fitMap(light, inputs.occluders, fromWorld, half);
     const float f = fit.reference;
 
-    // Square texels, and a border of empty ones.
-    const vec2 centre = 0.5f * (fit.window.min + fit.window.max);
+    // Square texels, and a border of empty ones, whole after a shift too.
     const vec2 extent = fit.window.max - fit.window.min;
     const float side = std::max(extent.x, extent.y);
-    const float h = 0.5f * side * static_cast<float>(size) / static_cast<float>(std::max(size - 2 * borderTexels, 1));
+    const int filled = size - 2 * borderTexels - (description.shift != vec2(0) ? 1 : 0);
+    const float h = 0.5f * side * static_cast<float>(size) / static_cast<float>(std::max(filled, 1));
+    const vec2 centre =
+        0.5f * (fit.window.min + fit.window.max) + description.shift * (2 * h / static_cast<float>(size));
 
     // clip = M · light-space position, row by row; see shaders/shared/view.glsl.h for the map's coordinates.
     mat4 rows(0);

@@ -24,6 +24,9 @@ struct ShadowMapDescription {
     Format format = Format::Depth32F; // or R32F, for depths that need a sign
     int samples = 1;                  // a texel; the driver's counts
     int layer = 0;                    // 0: the nearest surfaces, n: those behind the n-th; at most mostLayers − 1
+    // Moves the grid of texels by at most half a texel: without it all maps of a light have the same grid on the
+    // reference plane, and the mean of many keeps the rounding of each.
+    glm::vec2 shift{0, 0};
 };
 inline constexpr int mostLayers = 8;
 

@@ -67,8 +67,10 @@ public:
             if (done + perFrame >= samples) flow.finish(past);
         }
         flow.repeat(std::min(perFrame, samples - done), [&](int i) {
-            const LightSample point = lightPoint(inputs.light, samplePoint(inputs.seed, done + i));
-            const ShadowMap map = drawShadowMap(flow, scope, inputs, parameters_.map.describe(point));
+            ShadowMapDescription description =
+                parameters_.map.describe(lightPoint(inputs.light, samplePoint(inputs.seed, done + i)));
+            description.shift = gridShift(done + i);
+            const ShadowMap map = drawShadowMap(flow, scope, inputs, description);
             counted = count(flow, scope, inputs, map, counted);
         });
         done = std::min(done + perFrame, samples);
@@ -90,6 +92,12 @@ private:
     // Halton's i-th point after the corner; another seed shifts them all.
     static glm::vec2 samplePoint(uint32_t seed, int i) {
         return glm::fract(haltonPoint(static_cast<uint32_t>(i) + 1) + haltonPoint(seed));
+    }
+
+    // Of the texels, even over them and unrelated to Halton's points (the R2 sequence: Roberts 2018).
+    static glm::vec2 gridShift(int i) {
+        return glm::vec2(glm::fract(static_cast<double>(i) * glm::dvec2(0.7548776662466927, 0.5698402909980532))) -
+               0.5f;
     }
 
     Image count(Flow& flow, Scope scope, const Inputs& inputs, const ShadowMap& map,

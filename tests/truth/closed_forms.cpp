@@ -9,21 +9,36 @@ namespace {
 
 constexpr double H = 10, lightHalf = 0.5;
 
-// The share of [−½, ½] that the slab [low, high] x [bottom, top] hides, seen from x on the floor: each side of the slab
+// What the slab [low, high] x [bottom, top] hides of the light's line, seen from x on the floor: each side of the slab
 // seen at whichever of its two edges reaches farther.
-double hiddenInterval(double x, double low, double high, double bottom, double top) {
+struct Interval {
+    double from, to;
+    bool contains(double x) const { return from < x && x < to; }
+    double share() const { // of the light
+        return std::max(0.0, std::min(to, lightHalf) - std::max(from, -lightHalf)) / (2 * lightHalf);
+    }
+};
+Interval hidden(double x, double low, double high, double bottom, double top) {
     const auto onLight = [&](double edge, double height) { return x + (edge - x) * H / height; };
-    const double from = std::min(onLight(low, bottom), onLight(low, top));
-    const double to = std::max(onLight(high, bottom), onLight(high, top));
-    return std::max(0.0, std::min(to, lightHalf) - std::max(from, -lightHalf)) / (2 * lightHalf);
+    return {std::min(onLight(low, bottom), onLight(low, top)), std::max(onLight(high, bottom), onLight(high, top))};
 }
+Interval slab(glm::dvec3 p) { return hidden(p.x, -5, 0, 5.99, 6); }
+Interval plateX(glm::dvec3 p) { return hidden(p.x, -0.6, 0.6, 5.998, 6); }
+Interval plateZ(glm::dvec3 p) { return hidden(p.z, -0.4, 0.4, 5.998, 6); }
 
 } // namespace
 
-double halfPlanePsi(glm::dvec3 p) { return hiddenInterval(p.x, -5, 0, 5.99, 6); }
+double halfPlanePsi(glm::dvec3 p) { return slab(p).share(); }
+bool halfPlaneHides(glm::dvec3 p, glm::dvec2 onLight) { return slab(p).contains(onLight.x); }
 
-double rectanglePsi(glm::dvec3 p) {
-    return hiddenInterval(p.x, -0.6, 0.6, 5.998, 6) * hiddenInterval(p.z, -0.4, 0.4, 5.998, 6);
+double rectanglePsi(glm::dvec3 p) { return plateX(p).share() * plateZ(p).share(); }
+bool rectangleHides(glm::dvec3 p, glm::dvec2 onLight) {
+    return plateX(p).contains(onLight.x) && plateZ(p).contains(onLight.y);
+}
+
+bool sphereHides(glm::dvec3 p, glm::dvec2 onLight) {
+    const glm::dvec3 c = glm::dvec3(0, 6, 0) - p, d = glm::dvec3(onLight.x, H, onLight.y) - p;
+    return (glm::dot(c, c) - 0.6 * 0.6) * glm::dot(d, d) < glm::dot(c, d) * glm::dot(c, d);
 }
 
 // A ray from P along D passes the sphere around C at a distance below R where
