@@ -194,7 +194,7 @@ TEST_CASE("the listing names everything that it should") {
         }
         CHECK(shadow);
     }
-    for (const char* id : {"none", "hard", "pcf", "pcss"}) CHECK(ids.count(id) == 1);
+    for (const char* id : {"none", "hard", "pcf", "pcss", "light-sampling"}) CHECK(ids.count(id) == 1);
     CHECK(listing.at("scenes").at(0) == "courtyard");
     const auto& presets = listing.at("presets");
     for (const char* preset : {"pcf/gaussian-9x9", "pcss/16-16", "pcss/32-32", "pcss/64-64"})

@@ -85,6 +85,32 @@ TEST_CASE("a past image is there from the second frame on, for its own instance 
     CHECK_FALSE(frame(a, 16));
 }
 
+TEST_CASE("a past image knows its age, belongs to a key, and may be finished") {
+    Flow flow;
+    const auto frame = [&](uint64_t key, bool finished = false) {
+        flow.begin();
+        const PastImage past = flow.past(a, image("history"), key);
+        if (finished) flow.finish(past);
+        PassSpec spec = compute("history", 0, {{"past", past}});
+        spec.writes = {image("history")};
+        (void)flow.pass(a, spec);
+        return past.age();
+    };
+    CHECK(frame(1) == 0);
+    CHECK(frame(1) == 1);
+    CHECK(frame(1) == 2);
+    CHECK(flow.living());
+    CHECK(frame(2) == 0); // of another view
+    CHECK(frame(2, true) == 1);
+    CHECK_FALSE(flow.living());
+    CHECK(frame(1) == 0);
+    CHECK(flow.living());
+    flow.forget();
+    CHECK(frame(1) == 0);
+    flow.begin();
+    CHECK_FALSE(flow.living()); // nobody looks back
+}
+
 TEST_CASE("a repeat accumulates under one label and forbids reading what is gone") {
     Flow flow;
     flow.begin();
