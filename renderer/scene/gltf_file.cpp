@@ -393,14 +393,14 @@ bool isUnreadFormat(std::span<const uint8_t> bytes) {
 
 // stb_image allocates what a chunk claims to hold before it looks whether that is there.
 bool pngChunksFit(std::span<const uint8_t> bytes) {
-    for (size_t at = 8; bytes.size() - at >= 12;) { // length, type, data, checksum
+    for (size_t at = 8; at + 8 <= bytes.size();) { // length, type, data, checksum of four bytes
         if (startsWith(bytes, at + 4, "IEND")) return true;
         const size_t length =
             size_t{bytes[at]} << 24 | size_t{bytes[at + 1]} << 16 | size_t{bytes[at + 2]} << 8 | size_t{bytes[at + 3]};
-        if (length > bytes.size() - at - 12) return false;
+        if (length > bytes.size() - at - 8) return false;
         at += 12 + length;
     }
-    return false;
+    return true; // without an end, which is for stb_image to judge
 }
 
 size_t jpegScans(std::span<const uint8_t> bytes) {
