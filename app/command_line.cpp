@@ -1,10 +1,13 @@
 // SPDX-License-Identifier: MIT
 #include "app/command_line.h"
 
+#include "app/file_io.h"
 #include "app/preset.h"
+#include "renderer/core/paths.h"
 
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
+#include <nlohmann/json.hpp>
 
 #include <algorithm>
 #include <charconv>
@@ -88,6 +91,7 @@ constexpr ValueOption commonOptions[] = {
     {"--technique", "ID", "shadow technique; 'penumbra list' names them", &Options::technique},
     {"--like", "PICTURE", "everything as in a .png or .exr of ours; other options override it", &Options::like},
     {"--preset", "NAME|FILE", "technique and parameters from a preset", &Options::preset},
+    {"--view", "NAME", "a camera and a light of assets/views.json; other options override it", &Options::view},
     {"--size", "WxH", "size of the picture in pixels", &Options::size},
     {"--seed", "N", "start of the random sequences", &Options::seed},
     {"--camera", "X,Y,Z,TX,TY,TZ[,FOV]", "eye and target in metres, vertical field of view in degrees",
@@ -114,6 +118,34 @@ constexpr ValueOption captureOptions[] = {
      &Options::buffer},
 };
 
+constexpr ValueOption measureOptions[] = {
+    {"--techniques", "ID,ID...|all", "what is measured; without this --technique, or all", &Options::techniques},
+    {"--path", "FILE|orbit|walk",
+     "move the camera: along lines of T,X,Y,Z,TX,TY,TZ[,FOV], around the target or forwards", &Options::path},
+    {"--against", "ray|samples", "the truth: traced rays, or shadow maps from many points of the light",
+     &Options::against},
+    {"--shard", "I/N", "only the I-th of N parts of the combinations, for N machines", &Options::shard},
+};
+
+struct ListOption {
+    const char* name;
+    const char* value;
+    const char* help;
+    std::vector<std::string> Options::*member;
+    bool several; // values after one name
+};
+
+constexpr ListOption setOption = {"--set", "NAME=VALUE",
+                                  "a parameter: TECHNIQUE.PARAMETER=VALUE, or PARAMETER=VALUE of the chosen technique; "
+                                  "may be given several times",
+                                  &Options::assignments, false};
+constexpr ListOption measureLists[] = {
+    {"--sweep", "NAME=VALUES",
+     "a row for each of FROM:TO:STEPS, FROM:TO:STEPS:log or V1,V2,V3 of a parameter; several make every combination",
+     &Options::sweeps, false},
+    {"--merge", "FILE...", "join what was measured, as JSON, in parts", &Options::merged, true},
+};
+
 struct CountOption {
     const char* name;
     const char* help;
@@ -123,6 +155,10 @@ struct CountOption {
 
 constexpr CountOption frameOption = {"--frames", "number of frames; the last one is the result", 1, 1000000,
                                      &Options::frames};
+constexpr CountOption measureCounts[] = {
+    {"--repeat", "how often all frames are measured", 1, 10000, &Options::repeat},
+    {"--samples", "of the truth: rays a pixel, or shadow maps", 1, 65536, &Options::samples},
+};
 constexpr CountOption textureOptions[] = {
     {"--layer", "layer of the buffer, from 0", 0, 2047, &Options::layer},
     {"--level", "mip level of the buffer, from 0", 0, 14, &Options::level},
@@ -145,6 +181,12 @@ void addCountOption(CLI::App& app, const CountOption& option, Options& options) 
         ->type_name("N");
 }
 
+void addListOption(CLI::App& app, const ListOption& option, Options& options) {
+    app.add_option(option.name, options.*option.member, option.help)
+        ->type_name(option.value)
+        ->allow_extra_args(option.several);
+}
+
 void addCommonOptions(CLI::App& app, Options& options) {
     app.add_option_function<std::string>(
            "SCENE", [&options](const std::string& text) { options.scene = text; },
@@ -152,11 +194,7 @@ void addCommonOptions(CLI::App& app, Options& options) {
         ->type_name("");
     for (const ValueOption& option : commonOptions) addValueOption(app, option, options);
     addCountOption(app, frameOption, options);
-    app.add_option("--set", options.assignments,
-                   "a parameter: TECHNIQUE.PARAMETER=VALUE, or PARAMETER=VALUE of the "
-                   "chosen technique; may be given several times")
-        ->type_name("NAME=VALUE")
-        ->allow_extra_args(false);
+    addListOption(app, setOption, options);
     app.add_flag("--play", options.play, "let time run, 1/60 s a frame");
     app.add_flag("--json", options.json, "print results as JSON");
     app.allow_extras(); // so that we can name the nearest option ourselves
@@ -264,6 +302,33 @@ std::shared_ptr<const Scene> openScene(const Options& options, const std::option
     return scene;
 }
 
+// A view's own scene, and every option that it tells and the command line does not.
+Options withView(const Options& given) {
+    Options options = given;
+    if (!given.view) return options;
+    const std::filesystem::path file = assetFolder() / "views.json";
+    try {
+        const auto views = nlohmann::json::parse(readFile(file, 1 << 20));
+        std::vector<std::string_view> names;
+        for (auto view = views.begin(); view != views.end(); ++view) names.push_back(view.key());
+        nameOption("--view", *given.view, names);
+        const auto& view = views[*given.view];
+        for (const auto& [key, value] : view.items()) {
+            if (key == "scene") {
+                if (!given.scene) options.scene = value.get<std::string>();
+                continue;
+            }
+            const auto option = std::find_if(std::begin(commonOptions), std::end(commonOptions),
+                                             [&](const ValueOption& o) { return o.name == "--" + key; });
+            if (option == std::end(commonOptions)) throw InputError(fmt::format("'{}' is no option", key));
+            if (!(options.*option->member)) options.*option->member = value.get<std::string>();
+        }
+    } catch (const nlohmann::json::exception& error) {
+        throw InputError(fmt::format("{}: {}", file.string(), error.what()));
+    }
+    return options;
+}
+
 std::string oneLine(std::string text) {
     std::replace(text.begin(), text.end(), '\n', ' ');
     return text;
@@ -280,9 +345,16 @@ std::optional<Options> parseCommandLine(int argc, const char* const* argv) {
     addCommonOptions(*captureVerb, options);
     for (const ValueOption& option : captureOptions) addValueOption(*captureVerb, option, options);
     for (const CountOption& option : textureOptions) addCountOption(*captureVerb, option, options);
+    CLI::App* measureVerb =
+        app.add_subcommand("measure", "cost and error of techniques and sweeps of their parameters");
+    addCommonOptions(*measureVerb, options);
+    for (const ValueOption& option : measureOptions) addValueOption(*measureVerb, option, options);
+    for (const CountOption& option : measureCounts) addCountOption(*measureVerb, option, options);
+    for (const ListOption& option : measureLists) addListOption(*measureVerb, option, options);
+    measureVerb->add_flag("--csv", options.csv, "print results as comma-separated values");
     CLI::App* listVerb = app.add_subcommand("list", "techniques, parameters, buffers, scenes and presets");
     addCommonOptions(*listVerb, options);
-    for (CLI::App* verb : {captureVerb, listVerb}) verb->group("Verbs");
+    for (CLI::App* verb : {captureVerb, measureVerb, listVerb}) verb->group("Verbs");
     app.require_subcommand(0, 1);
 
     try {
@@ -295,6 +367,7 @@ std::optional<Options> parseCommandLine(int argc, const char* const* argv) {
     }
     refuseExtras(app);
     if (captureVerb->parsed()) options.verb = Verb::Capture;
+    if (measureVerb->parsed()) options.verb = Verb::Measure;
     if (listVerb->parsed()) options.verb = Verb::List;
     for (const CLI::App* verb : app.get_subcommands()) refuseExtras(*verb);
     if (options.verb == Verb::Capture && !options.output)
@@ -302,7 +375,8 @@ std::optional<Options> parseCommandLine(int argc, const char* const* argv) {
     return options;
 }
 
-Session makeSession(const Options& options, Shot& shot) {
+Session makeSession(const Options& given, Shot& shot) {
+    const Options options = withView(given);
     std::optional<PictureFacts> like;
     if (options.like) like.emplace(*options.like);
     Session session;

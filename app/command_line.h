@@ -11,7 +11,7 @@
 
 namespace penumbra {
 
-enum class Verb { Window, Capture, List };
+enum class Verb { Window, Capture, Measure, List };
 
 // The command line as it was written. Empty options were not given.
 struct Options {
@@ -22,8 +22,13 @@ struct Options {
     std::optional<std::string> camera, light, lightShape, lightSize, ground;
     std::optional<std::string> time, show, exposure, ambient, textureLimit;
     std::optional<std::string> output, buffer; // capture
+    std::optional<std::string> view;
     std::optional<int> frames;
-    std::optional<int> layer, level; // of the buffer
+    std::optional<int> layer, level;                             // of the buffer
+    std::optional<std::string> techniques, path, against, shard; // measure
+    std::vector<std::string> sweeps, merged;
+    std::optional<int> repeat, samples;
+    bool csv = false;
     bool play = false;
     bool json = false;
 };

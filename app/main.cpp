@@ -2,6 +2,7 @@
 #include "app/capture.h"
 #include "app/command_line.h"
 #include "app/list.h"
+#include "app/measure.h"
 #include "app/window.h"
 
 #include <fmt/format.h>
@@ -24,13 +25,15 @@ int openWindow(const Options& options) {
 }
 
 int run(const Options& options) {
+    int exitCode = 0;
     switch (options.verb) {
     case Verb::Window: return openWindow(options);
     case Verb::Capture: capture(options); break;
+    case Verb::Measure: exitCode = measure(options); break;
     case Verb::List: list(options); break;
     }
     if (std::fflush(stdout) != 0) throw std::runtime_error("standard output could not be written");
-    return 0;
+    return exitCode;
 }
 
 int report(std::string message, int exitCode) {

@@ -26,14 +26,26 @@ std::string checkedDriver() {
 PreparedScene::PreparedScene(std::shared_ptr<const Scene> scene, Progress* progress) : scene_(std::move(scene)) {
     state_.setScene(scene_);
     state_.update(0, 0, false);
-    geometry_ = std::make_unique<GpuScene>(state_, progress);
+    geometry_ = std::make_shared<GpuScene>(state_, progress);
     state_.restart();
 }
 PreparedScene::~PreparedScene() = default;
 PreparedScene::PreparedScene(PreparedScene&&) noexcept = default;
 PreparedScene& PreparedScene::operator=(PreparedScene&&) noexcept = default;
 
-Renderer::Renderer() : driver_(checkedDriver()) {
+PreparedScene PreparedScene::shared() const {
+    PreparedScene other;
+    other.scene_ = scene_;
+    other.state_ = state_;
+    other.state_.restart();
+    other.geometry_ = geometry_;
+    return other;
+}
+
+Renderer::Renderer() : Renderer(checkedDriver(), std::make_shared<ProgramLibrary>(shaderFolder())) {}
+
+Renderer::Renderer(std::string driver, std::shared_ptr<ProgramLibrary> programs)
+    : driver_(std::move(driver)), programs_(std::move(programs)) {
     for (const std::string_view name : {"llvmpipe", "softpipe", "SWR"})
         software_ = software_ || driver_.find(name) != std::string::npos;
     glPixelStorei(GL_UNPACK_ALIGNMENT, 1);
@@ -41,8 +53,15 @@ Renderer::Renderer() : driver_(checkedDriver()) {
 
 Renderer::~Renderer() = default;
 
+std::unique_ptr<Renderer> Renderer::sibling(bool sharesScene) const {
+    std::unique_ptr<Renderer> other(new Renderer(driver_, programs_));
+    if (sharesScene && drawn_) other->take(drawn_->shared());
+    return other;
+}
+
 void Renderer::reset() {
     flow_.forget();
+    if (drawn_) drawn_->state_.restart();
     lastClipFromWorld_.reset();
 }
 

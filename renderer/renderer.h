@@ -22,19 +22,24 @@ public:
     ~PreparedScene();
     PreparedScene(PreparedScene&&) noexcept;
     PreparedScene& operator=(PreparedScene&&) noexcept;
+    PreparedScene shared() const; // the same vertices and textures
     const std::shared_ptr<const Scene>& scene() const { return scene_; }
 
 private:
     friend class Renderer;
+    PreparedScene() = default;
     std::shared_ptr<const Scene> scene_;
     SceneState state_;
-    std::unique_ptr<GpuScene> geometry_;
+    std::shared_ptr<GpuScene> geometry_;
 };
 
 class Renderer {
 public:
     Renderer(); // throws InputError if the context is not OpenGL 4.5
     ~Renderer();
+    // Another one with images and a history of its own, that shares the programs and, if it `sharesScene`, this one's
+    // copy of the scene; that must not be done where vertices move, since each copy holds one moment.
+    std::unique_ptr<Renderer> sibling(bool sharesScene) const;
 
     // Draws one frame of the session at session.size. Throws InputError, before anything is drawn, if it would hold
     // more textures than session.textureLimit or one that the driver cannot have. There is no frame to look at then,
@@ -73,23 +78,24 @@ public:
     Pixels read(Image image, int layer = 0, int level = 0) const;
 
     // For passes of others than the frame's, under the same watch.
-    ProgramLibrary& programs() { return programs_; }
+    ProgramLibrary& programs() { return *programs_; }
     // Recompiles shaders whose files changed on disk; call now and then. Errors stay until mended, one text each with
     // our file and line; the last good program runs on meanwhile.
-    const std::vector<std::string>& pollShaders() { return programs_.poll(); }
-    uint64_t shaderGeneration() const { return programs_.generation(); }
+    const std::vector<std::string>& pollShaders() { return programs_->poll(); }
+    uint64_t shaderGeneration() const { return programs_->generation(); }
     // Takes in the times of frames drawn before that have come in since.
     void pollTimes() { runner_.pollTimes(); }
     bool softwareRenderer() const { return software_; }
     const std::string& driver() const { return driver_; } // "llvmpipe (...), Mesa ..."
 
 private:
+    Renderer(std::string driver, std::shared_ptr<ProgramLibrary> programs);
     void fail();
 
     std::string driver_; // first: its initialisation refuses what is not OpenGL 4.5
-    ProgramLibrary programs_{shaderFolder()};
+    std::shared_ptr<ProgramLibrary> programs_;
     Flow flow_;
-    FlowRunner runner_{programs_};
+    FlowRunner runner_{*programs_};
     std::optional<PreparedScene> drawn_, next_;
     std::optional<Frame> frame_;
     std::shared_ptr<const Texture> picture_;

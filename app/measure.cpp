@@ -1,0 +1,333 @@
+// SPDX-License-Identifier: MIT
+#include "app/measure.h"
+
+#include "app/command_line.h"
+#include "app/file_io.h"
+#include "app/headless.h"
+#include "app/measurement_report.h"
+#include "app/preset.h"
+#include "app/progress_line.h"
+#include "app/truth_cache.h"
+#include "renderer/core/hash.h"
+#include "renderer/measure/measurement.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <charconv>
+#include <csignal>
+
+namespace penumbra {
+namespace {
+
+constexpr int defaultFrames = 20;
+
+// --- what is measured ----------------------------------------------------------------------------------------------
+
+std::vector<std::string> commaList(std::string_view text) {
+    std::vector<std::string> pieces;
+    for (size_t end; (end = text.find(',')) != std::string_view::npos; text.remove_prefix(end + 1))
+        pieces.emplace_back(text.substr(0, end));
+    pieces.emplace_back(text);
+    return pieces;
+}
+
+std::vector<Setting> chosenSettings(const Options& options) {
+    std::vector<Setting> settings;
+    const bool all = options.techniques ? *options.techniques == "all" : !options.technique && !options.preset;
+    if (all)
+        for (const Card* card : catalogue()) settings.emplace_back(*card);
+    else if (options.techniques)
+        for (const std::string& id : commaList(*options.techniques)) settings.emplace_back(findCard(id));
+    else if (options.technique)
+        settings.emplace_back(findCard(*options.technique));
+    if (options.preset)
+        for (const std::string& preset : commaList(*options.preset)) {
+            TechniqueShelf shelf;
+            loadPreset(findPreset(preset), shelf);
+            settings.emplace_back(shelf.card(), shelf.parameters());
+        }
+    return settings;
+}
+
+std::vector<Setting> combinations(const Options& options) {
+    std::vector<SweepAxis> axes;
+    for (const std::string& sweep : options.sweeps) axes.push_back(parseSweep(sweep));
+    std::vector<Setting> settings = chosenSettings(options);
+    for (const std::string& assignment : options.assignments) assign(settings, assignment);
+    std::vector<Setting> all = combine(std::move(settings), axes);
+
+    size_t part = 0, parts = 1;
+    if (options.shard) {
+        const std::string& text = *options.shard;
+        const size_t slash = std::min(text.find('/'), text.size());
+        const char *middle = text.data() + slash, *end = text.data() + text.size();
+        const auto first = std::from_chars(text.data(), middle, part);
+        const auto second = middle < end ? std::from_chars(middle + 1, end, parts) : first;
+        if (middle == end || first.ec != std::errc() || first.ptr != middle || second.ec != std::errc() ||
+            second.ptr != end || part < 1 || part > parts)
+            throw InputError(fmt::format("--shard: '{}' is not I/N, whole numbers with 1 <= I <= N", text));
+        --part;
+    }
+    std::vector<Setting> chosen;
+    for (size_t i = part; i < all.size(); i += parts) chosen.push_back(std::move(all[i]));
+    return chosen;
+}
+
+MeasurementPlan makePlan(const Options& options, const Session& session) {
+    MeasurementPlan plan;
+    if (options.path) {
+        const std::string& path = *options.path;
+        if (path == "orbit") {
+            plan.path = CameraPath::orbit(session.camera);
+        } else if (path == "walk") {
+            plan.path = CameraPath::walk(session.camera);
+        } else {
+            try {
+                plan.path = CameraPath::parse(readFile(path, 16 << 20), session.camera);
+            } catch (const InputError& error) {
+                const std::string message = error.what();
+                throw InputError(
+                    fmt::format("--path: {}", message.starts_with(path) ? message : path + ": " + message));
+            }
+        }
+    }
+    plan.moves = plan.path || session.timeStep != 0;
+    plan.frames = options.frames.value_or(plan.path ? plan.path->frames() : defaultFrames);
+    if (plan.path && plan.frames > plan.path->frames())
+        throw InputError(
+            fmt::format("--frames: {} is more than the {} frames of the path", plan.frames, plan.path->frames()));
+    plan.repeats = options.repeat.value_or(1);
+    return plan;
+}
+
+// --- the document --------------------------------------------------------------------------------------------------
+
+Json intervalJson(const TimeSummary& summary) {
+    return {{"median", summary.median},
+            {"p95", summary.p95},
+            {"low", summary.interval.low},
+            {"high", summary.interval.high}};
+}
+
+Json figuresJson(const Errors& errors) {
+    Json json = {{"rmse", errors.all.rmse},
+                 {"mean_abs", errors.all.meanAbsolute},
+                 {"bias", errors.all.bias},
+                 {"p95", errors.all.p95},
+                 {"p99", errors.all.p99},
+                 {"max", errors.all.max},
+                 {"penumbra_rmse", errors.penumbra.rmse},
+                 {"penumbra_mean_abs", errors.penumbra.meanAbsolute},
+                 {"penumbra_bias", errors.penumbra.bias},
+                 {"penumbra_p95", errors.penumbra.p95},
+                 {"penumbra_p99", errors.penumbra.p99},
+                 {"penumbra_max", errors.penumbra.max}};
+    static constexpr const char* kinds[errorKinds] = {"leak", "false_shadow", "noise", "wide", "narrow"};
+    for (size_t k = 0; k < errorKinds; ++k) json[kinds[k]] = errors.share[k];
+    json["pixels"] = errors.pixels;
+    json["penumbra_pixels"] = errors.penumbraPixels;
+    json["cut_by_horizon"] = errors.cutByHorizon;
+    return json;
+}
+
+Json errorJson(const SettingResult& result, const Json& truth) {
+    if (!result.errors) return nullptr;
+    Json json = truth;
+    json.update(figuresJson(*result.errors));
+    json["flicker"] = result.flicker ? Json(*result.flicker) : Json();
+    return json;
+}
+
+Json framesJson(const SettingResult& result) {
+    Json frames = Json::array();
+    for (const FrameResult& frame : result.frames) {
+        const bool timed = !frame.milliseconds.empty();
+        frames.push_back({{"frame", frames.size()},
+                          {"seconds", frame.seconds},
+                          {"ms", timed ? Json(median(frame.milliseconds)) : Json()},
+                          {"cost", timed ? Json(median(frame.costs)) : Json()},
+                          {"standard_error", frame.standardError}});
+        frames.back().update(figuresJson(*frame.errors));
+    }
+    return frames;
+}
+
+Json parametersJson(const Setting& setting) {
+    Json json = Json::object();
+    for (const Parameter* parameter : setting.parameters().all())
+        if (setting.tells(*parameter)) json[std::string(parameter->spec().id)] = jsonOf(*parameter, parameter->value());
+    return json;
+}
+
+Json resultJson(const SettingResult& result, const Json& truth) {
+    Json json = {{"row", result.setting.place},
+                 {"technique", result.setting.card->id},
+                 {"parameters", parametersJson(result.setting)},
+                 {"ms", nullptr},
+                 {"cost", nullptr},
+                 {"stages", Json::object()},
+                 {"passes", Json::array()}};
+    if (!result.milliseconds.empty()) {
+        const TimeSummary frame = summarise(result.milliseconds);
+        json["ms"] = {{"median", frame.median}, {"p95", frame.p95}, {"min", frame.min}};
+        json["cost"] = intervalJson(summarise(result.costs));
+        json["timed_frames"] = frame.count;
+        for (size_t stage = 0; stage < result.stages.size(); ++stage)
+            if (!result.stages[stage].empty())
+                json["stages"][std::string(stageName(static_cast<Stage>(stage)))] = median(result.stages[stage]);
+        for (const PassTimes& pass : result.passes)
+            json["passes"].push_back(
+                {{"stage", stageName(pass.stage)}, {"label", pass.label}, {"ms", median(pass.milliseconds)}});
+    }
+    json["bytes"] = result.bytes;
+    json["maps"] = result.maps;
+    json["error"] = errorJson(result, truth);
+    json["frames"] = framesJson(result);
+    json["front"] = false;
+    if (!result.trouble.empty()) json["trouble"] = result.trouble;
+    return json;
+}
+
+// Cost over that of the first row, from rounds that both were in.
+void addRatios(const Measurement& measurement, Json& results) {
+    const auto& rows = measurement.results;
+    for (size_t i = 1; i < rows.size(); ++i) {
+        const size_t rounds = std::min(rows[0].costs.size(), rows[i].costs.size());
+        if (rounds == 0) continue;
+        const Ratio ratio = medianRatio({rows[i].costs.data(), rounds}, {rows[0].costs.data(), rounds});
+        results[i]["cost_over_first"] = {{"median", ratio.median},
+                                         {"low", ratio.interval.low},
+                                         {"high", ratio.interval.high},
+                                         {"differs", ratio.differs()}};
+    }
+}
+
+// Of all that decides what is seen and where its shadows fall. Not of the driver.
+uint64_t viewHash(const Session& session, const MeasurementPlan& plan) {
+    const Scene& scene = *session.scene;
+    Hash hash;
+    const auto addVector = [&](const auto& v) { hash.addBytes(&v, sizeof(v)); };
+    const auto addCamera = [&](const Camera& camera) {
+        addVector(camera.eye);
+        addVector(camera.target);
+        addVector(camera.up);
+        hash.add(camera.fovY);
+    };
+    Pose pose;
+    evaluatePose(scene, session.clip, session.time, pose);
+    hash.addBytes(scene.positions.data(), scene.positions.size() * sizeof(scene.positions[0]));
+    hash.add(scene.indices);
+    for (const TextureImage& texture : scene.textures) hash.add(texture.rgba);
+    for (const glm::mat4& matrix : pose.worldFromNode) addVector(matrix);
+    hash.add(pose.morphWeights);
+    addCamera(session.camera);
+    hash.add(session.light.shape);
+    addVector(session.light.position);
+    addVector(session.light.target);
+    addVector(session.light.size);
+    hash.add(session.ground);
+    hash.add(session.time);
+    hash.add(session.timeStep);
+    hash.add(session.seed);
+    addVector(session.size);
+    if (plan.path)
+        for (int frame = 0; frame < plan.frames; ++frame) addCamera(plan.path->at(frame));
+    return hash.value();
+}
+
+Json viewJson(const Options& options, const Session& session, const MeasurementPlan& plan) {
+    const Json facts = factsOf(session, Shot(), "");
+    Json view = {{"name", options.view ? Json(*options.view) : Json()}};
+    for (const char* fact : {"camera", "light", "ground", "time", "time-step", "seed"}) view[fact] = facts.at(fact);
+    view["path"] = options.path ? Json(*options.path) : Json();
+    view["hash"] = fmt::format("{:016x}", viewHash(session, plan));
+    return view;
+}
+
+void print(const Options& options, const Json& document) {
+    if (options.json)
+        fmt::print("{}\n", document.dump(2, ' ', false, Json::error_handler_t::replace));
+    else
+        fmt::print("{}", options.csv ? measurementCsv(document) : measurementTable(document));
+}
+
+constexpr int defaultMaps = 256;
+
+// `cache` lives as long as the plan is carried out.
+void chooseTruth(MeasurementPlan& plan, const Options& options, TruthCache& cache) {
+    static constexpr std::string_view names[] = {"ray", "samples"};
+    const std::string_view name = options.against ? std::string_view(*options.against) : names[0];
+    if (std::find(std::begin(names), std::end(names), name) == std::end(names))
+        throw InputError(
+            fmt::format("--against: '{}' is not one of {}{}", name, fmt::join(names, ", "), suggestion(name, names)));
+    if (name == "samples") {
+        plan.truth = sampledTruth(options.samples.value_or(defaultMaps));
+        return;
+    }
+    TruthSettings settings;
+    settings.cache = &cache;
+    if (options.samples) settings.leastSamples = settings.mostSamples = *options.samples;
+    plan.truth = tracedTruth(settings);
+    plan.biasMaps = defaultMaps;
+}
+
+} // namespace
+
+int measure(const Options& options) {
+    if (options.json && options.csv) throw InputError("--json and --csv: one of them was expected");
+    if (!options.merged.empty()) {
+        print(options, mergeMeasurements(options.merged));
+        return 0;
+    }
+    std::vector<Setting> settings = combinations(options);
+    const size_t rows = settings.size();
+    Options others = options; // what has to do with settings is known
+    others.technique = others.preset = std::nullopt;
+    others.assignments.clear();
+    Shot shot;
+    Session session = makeSession(others, shot);
+    session.time -= (shot.frames - 1) * session.timeStep; // that of the first frame
+    MeasurementPlan plan = makePlan(options, session);
+    TruthFiles cache;
+    chooseTruth(plan, options, cache);
+
+    const HeadlessContext context;
+    Json document;
+    std::vector<std::string> doubts;
+    {
+        const Renderer renderer;
+        doubts = doubtsAboutTimes(renderer, false);
+        for (const std::string& doubt : doubts) fmt::print(stderr, "note: {}\n", doubt);
+        document = {{"program", "penumbra"},
+                    {"version", PENUMBRA_VERSION},
+                    {"driver", renderer.driver()},
+                    {"scene", session.scene->name},
+                    {"size", {session.size.x, session.size.y}},
+                    {"view", viewJson(options, session, plan)},
+                    {"frames", plan.frames},
+                    {"repeat", plan.repeats},
+                    {"notes", doubts}};
+    }
+    Measurement measurement;
+    {
+        ProgressLine line;
+        measurement = penumbra::measure(std::move(session), std::move(settings), plan, line.progress());
+    }
+    document["complete"] = measurement.complete;
+    const Json truth = {{"against", options.against.value_or("ray")},
+                        {"samples", measurement.truthSamples},
+                        {"standard_error", measurement.truthStandardError},
+                        {"map_bias", measurement.mapBias ? Json(*measurement.mapBias) : Json()}};
+    document["results"] = Json::array();
+    for (const SettingResult& result : measurement.results) document["results"].push_back(resultJson(result, truth));
+    addRatios(measurement, document["results"]);
+    markFront(document);
+    print(options, document);
+    for (const std::string& message : context.messages()) fmt::print(stderr, "note: OpenGL: {}\n", message);
+    if (measurement.complete) return 0;
+    fmt::print(stderr, "penumbra: interrupted; {} of {} rows are kept\n", measurement.results.size(), rows);
+    return 1;
+}
+
+} // namespace penumbra
