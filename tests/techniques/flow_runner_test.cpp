@@ -222,17 +222,19 @@ TEST_CASE("the times of a frame in bands leave out what happened in between") {
         const Clock::time_point start = Clock::now();
         Clock::duration slept{};
         renderer().begin(s, timing);
-        while (!renderer().advance(1)) {
+        for (int pause = 0; pause < 4; ++pause) { // one band each, however fast the machine
+            REQUIRE_FALSE(renderer().advance(0));
             const Clock::time_point before = Clock::now();
             std::this_thread::sleep_for(std::chrono::milliseconds(20));
             slept += Clock::now() - before;
+        }
+        while (!renderer().advance(1)) {
         }
         const double wall = milliseconds(Clock::now() - start);
         const PassTimer& timer = renderer().runner().timer();
         if (timing == Timing::Queries) // they come some frames later
             for (int i = 0; i < 2; ++i) renderer().render(s, Timing::Queries);
         CAPTURE(int(timing), wall, milliseconds(slept));
-        REQUIRE(milliseconds(slept) >= 20);
         CHECK(timer.newest().milliseconds > 0);
         if (timing == Timing::Finish) CHECK(timer.newest().milliseconds <= wall - milliseconds(slept));
         double sum = 0;
