@@ -24,7 +24,7 @@ constexpr uint64_t framesToSettle = 6; // more than the timer's ring of queries
 constexpr double dearFrame = 50;       // [ms]
 // What a frame of the window may spend on the picture [ms], so that it answers well within a tenth of a second even
 // while pictures take seconds.
-constexpr double shareOfFrame = 40;
+constexpr double shareOfFrame = 30;
 
 template <class T> void append(std::vector<uint32_t>& words, const T& value) {
     static_assert(std::is_trivially_copyable_v<T> && sizeof(T) % 4 == 0);

@@ -18,7 +18,7 @@ constexpr int groupSize = 8; // compute shaders work in groups of 8x8
 
 constexpr double dearFrame = 16;       // [ms]; a frame that took less goes at one go
 constexpr size_t firstBandShare = 128; // of a pass whose pace is not known, and
-constexpr size_t fewestFirst = 16;     // at least so many groups
+constexpr size_t fewestFirst = 16;     // groups of texels at least
 constexpr size_t bandGrowth = 4;
 
 constexpr double forever = std::numeric_limits<double>::infinity();
@@ -31,8 +31,11 @@ struct Groups {
         , layers(static_cast<size_t>(extent.layers)) {}
     size_t count() const { return width * height * layers; }
 };
-size_t groupsOf(const Flow& flow, const Flow::PassNode& pass) {
-    return std::holds_alternative<Compute>(pass.work) ? Groups(flow.spec(pass.writes[0]).extent).count() : 1;
+// What a pass can be divided into: groups of texels or pieces of geometry.
+size_t partsOf(const Flow& flow, const Flow::PassNode& pass) {
+    if (std::holds_alternative<Compute>(pass.work)) return Groups(flow.spec(pass.writes[0]).extent).count();
+    const Draw* const draw = std::get_if<Draw>(&pass.work);
+    return draw && draw->geometry ? draw->geometry->pieces() : 1;
 }
 
 const Defines& definesOf(const Work& work) {
@@ -151,10 +154,10 @@ void FlowRunner::dispatch(const Flow& flow, const Flow::PassNode& pass, size_t g
     bindReads(flow, pass, program);
     bindWrites(flow, pass, program);
     const Groups all(flow.spec(pass.writes[0]).extent);
-    const size_t x = at_.groups % all.width, y = at_.groups / all.width % all.height,
-                 layer = at_.groups / (all.width * all.height);
+    const size_t x = at_.parts % all.width, y = at_.parts / all.width % all.height,
+                 layer = at_.parts / (all.width * all.height);
     Groups band = all;
-    if (at_.groups > 0 || groups < all.count()) {
+    if (at_.parts > 0 || groups < all.count()) {
         band.width = x > 0 || groups < all.width ? std::min(groups, all.width - x) : all.width;
         band.height = std::clamp<size_t>(band.width < all.width ? 1 : groups / all.width, 1, all.height - y);
         band.layers = 1;
@@ -167,11 +170,12 @@ void FlowRunner::dispatch(const Flow& flow, const Flow::PassNode& pass, size_t g
                       static_cast<GLuint>(band.layers));
     glMemoryBarrier(GL_TEXTURE_FETCH_BARRIER_BIT | GL_SHADER_IMAGE_ACCESS_BARRIER_BIT | GL_TEXTURE_UPDATE_BARRIER_BIT |
                     GL_FRAMEBUFFER_BARRIER_BIT);
-    at_.lastGroups = band.count();
-    at_.groups += at_.lastGroups;
+    at_.lastParts = band.count();
+    at_.parts += at_.lastParts;
 }
 
-void FlowRunner::runDraw(const Flow& flow, const Flow::PassNode& pass, const Draw& draw) {
+// At most so many pieces more.
+void FlowRunner::runDraw(const Flow& flow, const Flow::PassNode& pass, const Draw& draw, size_t pieces) {
     const GLuint target = framebuffer_.get();
     GLenum buffers[4] = {GL_NONE, GL_NONE, GL_NONE, GL_NONE};
     GLsizei colours = 0;
@@ -205,9 +209,12 @@ void FlowRunner::runDraw(const Flow& flow, const Flow::PassNode& pass, const Dra
     glClipControl(GL_LOWER_LEFT, GL_ZERO_TO_ONE);
     set(GL_DEPTH_CLAMP, draw.depthClamp);
     glDisable(GL_SCISSOR_TEST);
-    for (GLsizei i = 0; i < colours; ++i) glClearNamedFramebufferfv(target, GL_COLOR, i, draw.clear);
-    const float far = draw.reversedDepth ? 0 : 1;
-    if (hasDepth) glClearNamedFramebufferfv(target, GL_DEPTH, 0, &far);
+    if (at_.parts == 0) {
+        for (GLsizei i = 0; i < colours; ++i) glClearNamedFramebufferfv(target, GL_COLOR, i, draw.clear);
+        const float far = draw.reversedDepth ? 0 : 1;
+        if (hasDepth) glClearNamedFramebufferfv(target, GL_DEPTH, 0, &far);
+    }
+    at_.lastParts = std::min(pieces, partsOf(flow, pass) - at_.parts);
 
     if (draw.geometry) {
         set(GL_SCISSOR_TEST, draw.border > 0);
@@ -215,8 +222,9 @@ void FlowRunner::runDraw(const Flow& flow, const Flow::PassNode& pass, const Dra
                   std::max(extent.height - 2 * draw.border, 0));
         const Programs& programs = chosen_[at_.pass];
         bindReads(flow, pass, *programs.plain);
-        draw.geometry->draw(draw, {*programs.plain, *programs.textured, *programs.masked});
+        draw.geometry->draw(draw, {*programs.plain, *programs.textured, *programs.masked}, at_.parts, at_.lastParts);
     }
+    at_.parts += at_.lastParts;
     glBindFramebuffer(GL_DRAW_FRAMEBUFFER, 0);
     set(GL_SCISSOR_TEST, false);
     glClipControl(GL_LOWER_LEFT, GL_NEGATIVE_ONE_TO_ONE);
@@ -225,7 +233,8 @@ void FlowRunner::runDraw(const Flow& flow, const Flow::PassNode& pass, const Dra
 }
 
 FlowRunner::Pace& FlowRunner::paceOf(const Flow& flow, const Flow::PassNode& pass) {
-    const Compute& work = std::get<Compute>(pass.work);
+    Work work = pass.work;
+    if (Draw* const draw = std::get_if<Draw>(&work)) draw->poseVersion = 0; // wherever it stands
     const Extent& extent = flow.spec(pass.writes[0]).extent;
     auto pace = std::find_if(paces_.begin(), paces_.end(), [&](const Pace& p) {
         return p.label == pass.label && p.work == work && p.extent == extent && p.parameters == pass.parameterBlock;
@@ -254,7 +263,7 @@ void FlowRunner::begin(const Flow& flow, Timing timing) {
 
     careful_ = std::max(milliseconds_, timer_.newest().milliseconds) > dearFrame;
     for (const Flow::PassNode& pass : flow.passes())
-        if (std::holds_alternative<Compute>(pass.work) && paceOf(flow, pass).milliseconds < 0) careful_ = true;
+        if (partsOf(flow, pass) > 1 && paceOf(flow, pass).milliseconds < 0) careful_ = true;
     at_ = {};
     milliseconds_ = 0;
     underWay_ = true;
@@ -284,37 +293,36 @@ bool FlowRunner::settled(double milliseconds) {
     return true;
 }
 
-// How many groups of the pass under way should fit into the time.
-size_t FlowRunner::nextBand(size_t all, double millisecondsLeft) const {
+// How many parts of the pass under way should fit into the time.
+size_t FlowRunner::nextBand(size_t all, size_t fewest, double millisecondsLeft) const {
     const double mean = at_.pace->milliseconds;
-    if (at_.groups == 0 && mean < 0) return std::max(fewestFirst, all / firstBandShare);
-    const double last = at_.groups == 0 ? 0 : at_.lastMilliseconds / static_cast<double>(at_.lastGroups);
+    if (at_.parts == 0 && mean < 0) return std::max(fewest, all / firstBandShare);
+    const double last = at_.parts == 0 ? 0 : at_.lastMilliseconds / static_cast<double>(at_.lastParts);
     const double fitting = std::max(millisecondsLeft, 0.0) / std::max({mean, last, 1e-9});
-    const size_t groups = fitting < static_cast<double>(all) ? static_cast<size_t>(fitting) : all;
-    return std::clamp<size_t>(mean < 0 ? std::min(groups, bandGrowth * at_.groups) : groups, 1, all);
+    const size_t parts = fitting < static_cast<double>(all) ? static_cast<size_t>(fitting) : all;
+    return std::clamp<size_t>(mean < 0 ? std::min(parts, bandGrowth * at_.parts) : parts, 1, all);
 }
 
 // A whole pass or, in as many milliseconds, a band of it; a shader that does not know where a band begins runs whole.
 void FlowRunner::runPart(const Flow& flow, std::optional<double> millisecondsLeft) {
     const Flow::PassNode& pass = flow.passes()[at_.pass];
     const DebugGroup group(flow.label(pass.label));
-    if (at_.groups == 0) {
+    if (at_.parts == 0) {
         at_.constants = uniforms_.put(pass.constants.data(), pass.constants.size());
         at_.parameters = uniforms_.put(pass.parameterBlock.data(), pass.parameterBlock.size() * sizeof(uint32_t));
     }
     if (millisecondsLeft) timer_.resume();
     bandStart_ = Clock::now();
+    const size_t all = partsOf(flow, pass);
+    if (at_.parts == 0 && all > 1) at_.pace = &paceOf(flow, pass);
     if (const Draw* draw = std::get_if<Draw>(&pass.work)) {
-        runDraw(flow, pass, *draw);
-        at_.groups = 1;
+        runDraw(flow, pass, *draw, millisecondsLeft && all > 1 ? nextBand(all, 1, *millisecondsLeft) : all);
     } else if (const PoseVertices* poseVertices = std::get_if<PoseVertices>(&pass.work)) {
         poseVertices->geometry->pose(*chosen_[at_.pass].plain);
-        at_.groups = 1;
+        at_.parts = 1;
     } else {
-        const size_t all = groupsOf(flow, pass);
-        if (at_.groups == 0) at_.pace = &paceOf(flow, pass);
-        const bool divisible = chosen_[at_.pass].plain->bandOrigin() >= 0;
-        dispatch(flow, pass, millisecondsLeft && divisible ? nextBand(all, *millisecondsLeft) : all);
+        const bool divisible = chosen_[at_.pass].plain->bandOrigin() >= 0 && all > 1;
+        dispatch(flow, pass, millisecondsLeft && divisible ? nextBand(all, fewestFirst, *millisecondsLeft) : all);
     }
     timer_.endPass(pass.stage, pass.label);
     if (millisecondsLeft) fence_ = glFenceSync(GL_SYNC_GPU_COMMANDS_COMPLETE, 0);
@@ -327,8 +335,8 @@ bool FlowRunner::step(const Flow& flow, double milliseconds) {
     const auto spent = [&] { return std::chrono::duration<double, std::milli>(Clock::now() - start).count(); };
     constexpr double mostlySpent = 0.8; // what is left then is too little for a band
     for (bool begun = false; settled(bands ? milliseconds - spent() : forever); begun = true) {
-        if (at_.pass < flow.passes().size() && at_.groups == groupsOf(flow, flow.passes()[at_.pass])) {
-            if (at_.pace && bands) at_.pace->milliseconds = at_.milliseconds / static_cast<double>(at_.groups);
+        if (at_.pass < flow.passes().size() && at_.parts == partsOf(flow, flow.passes()[at_.pass])) {
+            if (at_.pace && bands) at_.pace->milliseconds = at_.milliseconds / static_cast<double>(at_.parts);
             at_ = {.pass = at_.pass + 1};
         }
         underWay_ = at_.pass < flow.passes().size();

@@ -2,12 +2,13 @@
 // Carries out a flow: allocates its images, compiles its programs, runs its passes under debug groups and timers.
 //
 // Whoever must not be kept waiting runs a frame in steps of some milliseconds. A dear frame then goes pass by pass, and
-// a dear compute pass in bands: dispatches of as many groups of texels as should fit into what is left of the step. A
+// a dear pass in bands: as many groups of texels or pieces of geometry as should fit into what is left of the step. A
 // fence behind each tells when it is done (a software renderer works within the call, a GPU behind our back), and how
 // long it took is the pace of the next. Where a pass has changed since the last frame nothing is known of its pace: it
 // starts with a small band, and bands grow at most fourfold, since the first rows may be cheaper than the others.
 // Frames that took little and did not change run at one go and wait for nothing. The images are the same bit for bit,
-// since a group does the same work in whichever dispatch it is (shaders/band.glsl), and nobody above needs to know.
+// since a group does the same work in whichever dispatch it is (shaders/band.glsl) and pieces are drawn in their order;
+// nobody above needs to know.
 #pragma once
 
 #include "renderer/core/flow.h"
@@ -62,21 +63,21 @@ private:
     struct Programs {
         const Program *plain, *textured, *masked;
     };
-    // How long a group of texels takes a compute pass; known of a pass that has run before as it is.
+    // How long a group of texels or a piece of geometry takes; known of a pass that has run before as it is.
     struct Pace {
         int label;
-        Compute work;
+        Work work;
         Extent extent;
         FixedVector<uint32_t, 64> parameters;
-        double milliseconds; // a group, the mean; negative: not known yet
+        double milliseconds; // a part, the mean; negative: not known yet
         uint64_t lastUsed;
     };
     // The pass that is under way, as far as it has come.
     struct Progress {
         size_t pass = 0;
-        size_t groups = 0;           // done, in rows, then layers; a pass that is no compute pass counts as one
+        size_t parts = 0;            // done: groups of texels in rows, then layers; pieces of geometry; or the one
         double milliseconds = 0;     // that they took
-        size_t lastGroups = 0;       // of the last band
+        size_t lastParts = 0;        // of the last band
         double lastMilliseconds = 0; // that it took
         size_t constants = 0, parameters = 0; // where their bytes are
         Pace* pace = nullptr;
@@ -91,10 +92,10 @@ private:
     const Program& program(const Flow::PassNode& pass, const char* variant = nullptr); // with a define more
     void bindReads(const Flow& flow, const Flow::PassNode& pass, const Program& program);
     void bindWrites(const Flow& flow, const Flow::PassNode& pass, const Program& program);
-    void runDraw(const Flow& flow, const Flow::PassNode& pass, const Draw& draw);
+    void runDraw(const Flow& flow, const Flow::PassNode& pass, const Draw& draw, size_t pieces);
     void dispatch(const Flow& flow, const Flow::PassNode& pass, size_t groups);
     Pace& paceOf(const Flow& flow, const Flow::PassNode& pass);
-    size_t nextBand(size_t all, double millisecondsLeft) const;
+    size_t nextBand(size_t all, size_t fewest, double millisecondsLeft) const;
     void runPart(const Flow& flow, std::optional<double> millisecondsLeft);
     bool settled(double milliseconds);
 

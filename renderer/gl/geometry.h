@@ -22,7 +22,9 @@ public:
     virtual bool hasColours() const { return false; }
     // Works out the vertices that skins and morph targets move, by a compute program.
     virtual void pose(const Program&) const {}
-    virtual void draw(const Draw& draw, const Programs& programs) const = 0;
+    // The pieces that draw() can be told to begin and end with, of some thousand triangles at most. At least one.
+    virtual size_t pieces() const = 0;
+    virtual void draw(const Draw& draw, const Programs& programs, size_t firstPiece, size_t pieces) const = 0;
 };
 
 } // namespace penumbra

@@ -28,6 +28,7 @@ GLint glWrap(Wrap wrap) {
 // A unit square in the xz plane, facing up; the ground is this, moved and scaled.
 constexpr glm::vec3 squarePositions[] = {{-1, 0, -1}, {-1, 0, 1}, {1, 0, 1}, {1, 0, -1}};
 constexpr uint32_t squareIndices[] = {0, 1, 2, 0, 2, 3};
+constexpr uint32_t mostIndices = 3 << 14; // of a command, its instances together, if there are several
 constexpr glm::vec4 groundColour{0.5f, 0.5f, 0.5f, 1};
 
 glm::mat4 worldFromSquare(const Ground& ground) {
@@ -38,6 +39,27 @@ glm::mat4 worldFromSquare(const Ground& ground) {
 // The upper three rows of a matrix whose last row is 0 0 0 1.
 glm::mat3x4 affineRows(const glm::mat4& matrix) { return glm::mat3x4(glm::transpose(matrix)); }
 
+void destroyFramebuffer(GLuint name) { glDeleteFramebuffers(1, &name); }
+
+// Each level from the one above it, by a bilinear filter in linear light. glGenerateTextureMipmap does the same, but Mesa
+// locks what contexts share until it is done, the compilation of its shaders included, and a window that draws beside a
+// loading scene stands still so long.
+void makeMipmaps(GLuint texture, int width, int height, int levels) {
+    GLuint names[2];
+    glCreateFramebuffers(2, names);
+    const Handle<destroyFramebuffer> from(names[0]), to(names[1]);
+    glEnable(GL_FRAMEBUFFER_SRGB);
+    for (int level = 1; level < levels; ++level) {
+        const int smallerWidth = std::max(width / 2, 1), smallerHeight = std::max(height / 2, 1);
+        glNamedFramebufferTexture(from.get(), GL_COLOR_ATTACHMENT0, texture, level - 1);
+        glNamedFramebufferTexture(to.get(), GL_COLOR_ATTACHMENT0, texture, level);
+        glBlitNamedFramebuffer(from.get(), to.get(), 0, 0, width, height, 0, 0, smallerWidth, smallerHeight,
+                               GL_COLOR_BUFFER_BIT, GL_LINEAR);
+        width = smallerWidth, height = smallerHeight;
+    }
+    glDisable(GL_FRAMEBUFFER_SRGB);
+}
+
 } // namespace
 
 GpuScene::TextureHandle GpuScene::upload(const TextureImage& image) {
@@ -47,7 +69,7 @@ GpuScene::TextureHandle GpuScene::upload(const TextureImage& image) {
     const int levels = std::bit_width(static_cast<unsigned>(std::max(image.width, image.height)));
     glTextureStorage2D(name, levels, GL_SRGB8_ALPHA8, image.width, image.height);
     glTextureSubImage2D(name, 0, 0, 0, image.width, image.height, GL_RGBA, GL_UNSIGNED_BYTE, image.rgba.data());
-    glGenerateTextureMipmap(name);
+    makeMipmaps(name, image.width, image.height, levels);
     glTextureParameteri(name, GL_TEXTURE_WRAP_S, glWrap(image.wrapU));
     glTextureParameteri(name, GL_TEXTURE_WRAP_T, glWrap(image.wrapV));
     glTextureParameteri(name, GL_TEXTURE_MAG_FILTER, image.magnifyNearest ? GL_NEAREST : GL_LINEAR);
@@ -135,8 +157,8 @@ void GpuScene::uploadVertices(const Scene& scene) {
     joints_ = whole("joints", jointRows_, GL_DYNAMIC_STORAGE_BIT);
 }
 
-// Commands in an order that makes long batches: all opaque casters stand together. Instances of one primitive are one
-// command.
+// Commands in an order that makes long batches: all opaque casters stand together. Instances of one small primitive are
+// one command, a large primitive is several, so that a dear pass can be drawn piece by piece.
 void GpuScene::planDraws(const SceneState& state) {
     const Scene& scene = *state.scene();
     struct Keyed {
@@ -175,7 +197,7 @@ void GpuScene::planDraws(const SceneState& state) {
     for (size_t i = 0; i < order.size(); ++i) {
         const Keyed& keyed = order[i];
         const bool newBatch = i == 0 || key(order[i - 1].batch) != key(keyed.batch);
-        const bool newCommand = newBatch || drawn(order[i - 1]) != drawn(keyed);
+        const uint32_t commandsBefore = static_cast<uint32_t>(commands.size());
         const uint32_t draw = static_cast<uint32_t>(draws_.size());
         DrawData data{affineRows(glm::mat4(1)), groundColour, glm::vec4(0), affineRows(glm::mat4(1))};
         if (keyed.drawable == ground) {
@@ -188,9 +210,14 @@ void GpuScene::planDraws(const SceneState& state) {
             const Material& material = scene.materials[static_cast<size_t>(p.material)];
             const int32_t posed = firstPosed_[keyed.drawable];
             const uint32_t firstVertex = posed >= 0 ? static_cast<uint32_t>(posed) : posedVertices_ + p.firstVertex;
-            if (newCommand)
-                commands.push_back({p.indexCount, 0, p.firstIndex, static_cast<int32_t>(firstVertex), draw});
-            ++commands.back().instances;
+            // Another instance of the last command, or commands of their own.
+            if (!newBatch && drawn(order[i - 1]) == drawn(keyed) &&
+                uint64_t(commands.back().instances + 1) * p.indexCount <= mostIndices)
+                ++commands.back().instances;
+            else
+                for (uint32_t first = 0; first < p.indexCount; first += mostIndices)
+                    commands.push_back({std::min(mostIndices, p.indexCount - first), 1, p.firstIndex + first,
+                                        static_cast<int32_t>(firstVertex), draw});
             data.baseColour = glm::vec4(glm::vec3(material.baseColour), leastAlpha(material));
             data.emissive_unlit = glm::vec4(material.emissive, material.unlit ? 1 : 0);
         }
@@ -198,10 +225,11 @@ void GpuScene::planDraws(const SceneState& state) {
         drawableOfDraw_.push_back(keyed.drawable);
         if (newBatch) {
             batches_.push_back(keyed.batch);
-            batches_.back().firstCommand = static_cast<uint32_t>(commands.size()) - 1;
+            batches_.back().firstCommand = commandsBefore;
         }
-        if (newCommand) ++batches_.back().commandCount;
+        batches_.back().commandCount += static_cast<uint32_t>(commands.size()) - commandsBefore;
     }
+    commandCount_ = static_cast<uint32_t>(commands.size());
     commands_ = Buffer("draw commands", commands.size() * sizeof(Command), commands.data(), GL_DYNAMIC_STORAGE_BIT);
     drawBuffer_ = Buffer("draws", draws_.size() * sizeof(DrawData), draws_.data(), GL_DYNAMIC_STORAGE_BIT);
 }
@@ -281,7 +309,7 @@ void GpuScene::pose(const Program& program) const {
     glMemoryBarrier(GL_VERTEX_ATTRIB_ARRAY_BARRIER_BIT | GL_SHADER_STORAGE_BARRIER_BIT);
 }
 
-void GpuScene::draw(const Draw& draw, const Programs& programs) const {
+void GpuScene::draw(const Draw& draw, const Programs& programs, size_t firstPiece, size_t pieces) const {
     if (!vertexArray_.get()) makeVertexArray();
     glBindVertexArray(vertexArray_.get());
     glBindBuffer(GL_DRAW_INDIRECT_BUFFER, commands_.name());
@@ -307,16 +335,17 @@ void GpuScene::draw(const Draw& draw, const Programs& programs) const {
         const Batch& batch = batches_[i];
         const Program& program = programOf(batch);
         const int unit = textureUnit(program);
-        size_t end = i;
-        uint32_t commands = 0;
+        size_t end = i, lastCommand = batch.firstCommand;
         const auto alike = [&](const Batch& other) {
             return other.casts == batch.casts && other.posed == batch.posed && &programOf(other) == &program &&
                    (unit < 0 || other.texture == batch.texture) && culls(other) == culls(batch) &&
                    (!culls(batch) || other.mirrored == batch.mirrored);
         };
-        for (; end < batches_.size() && alike(batches_[end]); ++end) commands += batches_[end].commandCount;
+        for (; end < batches_.size() && alike(batches_[end]); ++end) lastCommand += batches_[end].commandCount;
         i = end;
-        if (draw.castersOnly && !batch.casts) continue;
+        const size_t firstCommand = std::max<size_t>(batch.firstCommand, firstPiece);
+        lastCommand = std::min(lastCommand, firstPiece + pieces);
+        if ((draw.castersOnly && !batch.casts) || firstCommand >= lastCommand) continue;
 
         if (unit >= 0) {
             const size_t texture = batch.texture >= 0 ? static_cast<size_t>(batch.texture) : textures_.size() - 1;
@@ -331,8 +360,8 @@ void GpuScene::draw(const Draw& draw, const Programs& programs) const {
         glUseProgram(program.name());
         glMultiDrawElementsIndirect(
             GL_TRIANGLES, GL_UNSIGNED_INT,
-            reinterpret_cast<const void*>(static_cast<uintptr_t>(batch.firstCommand * sizeof(Command))),
-            static_cast<GLsizei>(commands), 0);
+            reinterpret_cast<const void*>(static_cast<uintptr_t>(firstCommand * sizeof(Command))),
+            static_cast<GLsizei>(lastCommand - firstCommand), 0);
     }
     glDisable(GL_CULL_FACE);
     glFrontFace(GL_CCW);

@@ -22,7 +22,8 @@ public:
 
     bool hasColours() const override { return colours_.bytes() > 0; }
     void pose(const Program& program) const override;
-    void draw(const Draw& draw, const Programs& programs) const override;
+    size_t pieces() const override { return commandCount_; } // a command each
+    void draw(const Draw& draw, const Programs& programs, size_t firstPiece, size_t pieces) const override;
 
 private:
     // As glMultiDrawElementsIndirect reads it.
@@ -65,7 +66,7 @@ private:
     std::vector<uint32_t> drawableOfDraw_; // index into SceneState::drawables(); drawables().size(): the ground
     std::vector<Batch> batches_;
     std::vector<DrawData> draws_;
-    uint32_t groundCommand_ = 0, groundVertices_ = 0;
+    uint32_t commandCount_ = 0, groundCommand_ = 0, groundVertices_ = 0;
     Buffer positions_, lastPositions_, normals_, uvs_, colours_, indices_, commands_, drawBuffer_;
     Buffer influences_, deltas_, jobBuffer_, joints_, weights_; // of what is posed
     std::vector<glm::mat3x4> jointRows_;                        // as sent
