@@ -10,6 +10,7 @@
 #include <algorithm>
 #include <cstdio>
 #include <cstdlib>
+#include <malloc.h>
 
 using namespace penumbra;
 
@@ -45,6 +46,9 @@ int report(std::string message, int exitCode) {
 } // namespace
 
 int main(int argc, char** argv) {
+    // What a scene took while it was loading goes back to the system at once: without this, glibc keeps blocks of up to
+    // 32 MiB, those of each loading thread for itself.
+    mallopt(M_MMAP_THRESHOLD, 4 << 20);
     try {
         const std::optional<Options> options = parseCommandLine(argc, argv);
         return options ? run(*options) : 0;
