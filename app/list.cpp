@@ -98,6 +98,7 @@ Json sceneJson(const Scene& scene) {
         clips.push_back(
             {{"name", clip.name}, {"seconds", std::round(1000.0 * static_cast<double>(clip.duration)) / 1000}});
     return {{"file", scene.file.string()},
+            {"description", scene.description},
             {"triangles", scene.triangleCount()},
             {"parts", scene.sceneNames},
             {"variants", scene.variantNames},
@@ -105,6 +106,13 @@ Json sceneJson(const Scene& scene) {
             {"cameras", names(scene.cameras)},
             {"lights", names(scene.lights)},
             {"notes", scene.notes}};
+}
+
+Json builtInScenesJson() {
+    Json json = Json::array();
+    for (const std::string& name : builtInScenes())
+        json.push_back({{"name", name}, {"description", importGltf(findScene(name)).description}});
+    return json;
 }
 
 // Everything that there is to list; the text is written from it.
@@ -119,7 +127,7 @@ Json listing(const Options& options) {
     }
     Json json = {{"version", PENUMBRA_VERSION},
                  {"techniques", techniques},
-                 {"scenes", builtInScenes()},
+                 {"scenes", builtInScenesJson()},
                  {"presets", presetNames()}};
     if (options.scene) json["scene"] = sceneJson(*session.scene);
     return json;
@@ -160,13 +168,10 @@ void printTechnique(const Json& technique) {
     fmt::print("\n");
 }
 
-void printNames(const char* title, const Json& names) {
-    fmt::print("{}\n", title);
-    for (const Json& name : names) fmt::print("  {}\n", name.get<std::string>());
-}
-
 void printScene(const Json& scene) {
     fmt::print("{}: {} triangles\n", text(scene, "file"), scene["triangles"].get<uint64_t>());
+    if (const std::string description = text(scene, "description"); !description.empty())
+        fmt::print("  {}\n", description);
     for (const auto& [key, list] : scene.items()) {
         // Notes go to stderr, and a single part is no choice.
         if (!list.is_array() || list.empty() || key == "notes" || (key == "parts" && list.size() == 1)) continue;
@@ -191,9 +196,10 @@ void list(const Options& options) {
     }
     if (json.contains("scene")) printScene(json["scene"]);
     for (const Json& technique : json["techniques"]) printTechnique(technique);
-    printNames("Scenes", json["scenes"]);
-    fmt::print("\n");
-    printNames("Presets", json["presets"]);
+    fmt::print("Scenes\n");
+    for (const Json& scene : json["scenes"]) fmt::print("  {:<24} {}\n", text(scene, "name"), text(scene, "description"));
+    fmt::print("\nPresets\n");
+    for (const Json& preset : json["presets"]) fmt::print("  {}\n", preset.get<std::string>());
 }
 
 } // namespace penumbra

@@ -58,6 +58,7 @@ void SidePanel::scene(Session& session, const SceneFacts& facts, Requests& reque
     ImGui::SameLine(0, ImGui::GetStyle().ItemInnerSpacing.x);
     requests.chooseFile = ImGui::Button("Open…");
     choices(scene, requests);
+    if (!scene.description.empty()) wrappedText(colour::muted, scene.description);
     row("Triangles");
     text(ShortText("{}", facts.triangles).view());
     row("Size");

@@ -90,6 +90,7 @@ public:
         parseModel();
         accessors_.checkAll();
         noteExtensions();
+        describe();
         chooseScene();
         chooseVariant();
         for (size_t i = 0; i < model_.materials.size(); ++i) {
@@ -237,6 +238,13 @@ private:
                      names.empty()
                          ? "the file has none"
                          : fmt::format("is not one of {}{}", fmt::join(names, ", "), suggestion(wanted, views)));
+    }
+
+    void describe() {
+        const json& asset = file_.document()["asset"];
+        const json extras = asset.value("extras", json());
+        const json description = extras.is_object() ? extras.value("description", json()) : json();
+        if (description.is_string()) scene_.description = oneLine(description.get<std::string>());
     }
 
     void chooseScene() {

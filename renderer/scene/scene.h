@@ -148,6 +148,7 @@ struct NamedLight {
 
 struct Scene {
     std::string name;                  // for people and file names: "courtyard"
+    std::string description;           // what the file says of itself, in a line (asset.extras.description), or empty
     std::filesystem::path file;        // empty for scenes made in memory
     uint32_t checksum = 0;             // CRC-32 of the file and of those that it names
     std::vector<glm::vec3> positions;  // one per vertex

@@ -195,7 +195,8 @@ TEST_CASE("the listing names everything that it should") {
         CHECK(shadow);
     }
     for (const char* id : {"none", "hard", "pcf", "pcss", "light-sampling"}) CHECK(ids.count(id) == 1);
-    CHECK(listing.at("scenes").at(0) == "courtyard");
+    CHECK(listing.at("scenes").at(0).at("name") == "courtyard");
+    CHECK_FALSE(listing.at("scenes").at(0).at("description").get<std::string>().empty());
     const auto& presets = listing.at("presets");
     for (const char* preset : {"pcf/gaussian-9x9", "pcss/16-16", "pcss/32-32", "pcss/64-64"})
         CHECK(std::find(presets.begin(), presets.end(), preset) != presets.end());
