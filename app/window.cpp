@@ -6,6 +6,7 @@
 #include "app/preset.h"
 #include "app/session_facts.h"
 #include "app/settings.h"
+#include "app/truth_cache.h"
 #include "renderer/core/paths.h"
 #include "ui/workspace.h"
 
@@ -247,6 +248,14 @@ void Window::onStroke(GLFWwindow* window, int key, int modifiers) {
     case GLFW_KEY_SPACE: struck.play = true; break;
     case GLFW_KEY_B: struck.buffers = true; break;
     case GLFW_KEY_T: struck.timings = true; break;
+    case GLFW_KEY_Y: struck.truth = true; break;
+    case GLFW_KEY_U: struck.ruler = true; break;
+    case GLFW_KEY_X: struck.exchange = true; break;
+    case GLFW_KEY_0: struck.alone = true; break;
+    case GLFW_KEY_1: struck.wipe = true; break;
+    case GLFW_KEY_2: struck.flip = true; break;
+    case GLFW_KEY_3: struck.sideBySide = true; break;
+    case GLFW_KEY_4: struck.errorMap = true; break;
     default: break;
     }
 }
@@ -438,8 +447,9 @@ Picture pictureOf(const Pixels& pixels) {
 }
 
 Actions actionsOn(Session& session, const Renderer& renderer, const Window& window, Settings& settings,
-                  FileNames& names) {
+                  FileNames& names, TruthCache& truthCache) {
     Actions actions;
+    actions.truthCache = &truthCache;
     actions.readPicture = [](SceneRequest& request) {
         if (!mayHoldFacts(request.nameOrFile)) return;
         const auto facts = std::make_shared<const PictureFacts>(request.nameOrFile);
@@ -515,7 +525,8 @@ int runWindow(Session& session, glm::ivec2 size) {
         trouble = error.what();
     }
     FileNames names;
-    Workspace workspace(session, renderer, loader, actionsOn(session, renderer, window, settings, names));
+    TruthFiles truthFiles;
+    Workspace workspace(session, renderer, loader, actionsOn(session, renderer, window, settings, names, truthFiles));
     if (!trouble.empty()) workspace.say(trouble);
     if (!gui.fit()) workspace.say("DejaVu Sans is not installed: Greek letters and signs show as '?'");
     glfwSetWindowTitle(window.get(), fmt::format("{} – Penumbra", session.scene->name).c_str());

@@ -11,6 +11,8 @@ namespace {
 
 constexpr Scope sceneScope{.instance = {}, .owner = "scene"};
 constexpr Scope frameScope{};
+constexpr Scope truthScope{.instance = {}, .owner = "truth"};
+constexpr Scope compareScope{.instance = {}, .owner = "compare"};
 
 constexpr Channel depthChannels[] = {{"depth", "d", "distance along the view axis; 0: no surface", Unit::Metres}};
 constexpr Channel normalChannels[] = {{"geometric-x", "n", "geometric normal, world, octahedral", Unit::None, -1, 1},
@@ -28,6 +30,12 @@ constexpr Channel zChannels[] = {{"z", "", "the rasteriser's own depth; 1: near 
 constexpr Channel litChannels[] = {{"red", "", "reflected light, linear"},
                                    {"green", "", "reflected light, linear"},
                                    {"blue", "", "reflected light, linear"}};
+constexpr Channel truthChannels[] = {
+    {"shadow", "ψ*", "share of the light that is not seen, by traced rays", Unit::None, 0, 1},
+    {"counted", "", "1 where errors are counted: the surface faces the whole light", Unit::None, 0, 1}};
+constexpr Channel errorChannels[] = {
+    {"error", "e", "ψ of the technique minus the truth or ψ of technique B; positive: too dark", Unit::None, -1, 1},
+    {"counted", "", "1 where errors are counted", Unit::None, 0, 1}};
 constexpr Channel displayChannels[] = {{"red", "", "as shown, sRGB", Unit::None, 0, 1},
                                        {"green", "", "as shown, sRGB", Unit::None, 0, 1},
                                        {"blue", "", "as shown, sRGB", Unit::None, 0, 1}};
@@ -46,6 +54,8 @@ struct LightingConstants {
 
 struct DisplayConstants {
     vec4 exposure_show; // x = factor, y = Show
+    vec4 halves;        // x = first column that shows the other image, y = the column where that image begins
+    vec4 gain;          // x = factor on errors
 };
 
 // Passes of the scene's own: vertices that skins and morph targets move.
@@ -88,31 +98,74 @@ Surfaces drawSurfaces(Flow& flow, const View& view, const SceneState& state, con
     return {{images[0], images[1], state.moving() ? std::optional(images[3]) : std::nullopt}, images[2]};
 }
 
-Image shade(Flow& flow, const Session& session, const View& view, const Surfaces& surfaces, Image shadow) {
+Image shade(Flow& flow, Scope scope, const Session& session, const View& view, const Surfaces& surfaces, Image shadow) {
     const AreaLight& light = session.light;
     const LightingConstants constants{
         viewBlock(view), lightFromWorld(light), vec4(light.colour * light.intensity, session.display.ambient),
         vec4(static_cast<float>(light.shape), glm::distance(light.position, light.target), light.size)};
-    return flow.pass(frameScope, {.stage = Stage::Lighting,
-                                  .name = "lit",
-                                  .work = Compute{"lighting.glsl"},
-                                  .reads = {{"depth", surfaces.buffer.depth},
-                                            {"normal", surfaces.buffer.normal},
-                                            {"colour", surfaces.colour},
-                                            {"shadow", shadow}},
-                                  .writes = {{"lit", Format::RGBA16F, {view.size.x, view.size.y}, litChannels}},
-                                  .constants = constants});
+    return flow.pass(scope, {.stage = Stage::Lighting,
+                             .name = "lit",
+                             .work = Compute{"lighting.glsl"},
+                             .reads = {{"depth", surfaces.buffer.depth},
+                                       {"normal", surfaces.buffer.normal},
+                                       {"colour", surfaces.colour},
+                                       {"shadow", shadow}},
+                             .writes = {{"lit", Format::RGBA16F, {view.size.x, view.size.y}, litChannels}},
+                             .constants = constants});
 }
 
-Image show(Flow& flow, const Session& session, Image shown) {
-    const DisplayConstants constants{
-        {std::exp2(session.display.exposure), static_cast<float>(session.display.show), 0, 0}};
-    return flow.pass(frameScope, {.stage = Stage::Display,
-                                  .name = "display",
-                                  .work = Compute{"display.glsl"},
-                                  .reads = {{"shown", shown}},
-                                  .writes = {{"display", Format::RGBA8, flow.spec(shown).extent, displayChannels}},
-                                  .constants = constants});
+Image supply(Flow& flow, const TruthImage& truth, glm::ivec2 size) {
+    return flow.pass(truthScope, {.stage = Stage::Display,
+                                  .name = "shadow",
+                                  .work = Supply{truth.texels},
+                                  .writes = {{"shadow", Format::RG32F, {size.x, size.y}, truthChannels}}});
+}
+
+// ψ of the technique minus another one, or ψ*.
+Image subtract(Flow& flow, const Surfaces& surfaces, Image shadow, Image other, bool isTruth) {
+    PassSpec pass{.stage = Stage::Display,
+                  .name = "error",
+                  .work = Compute{"error.glsl"},
+                  .reads = {{"shadow", shadow}, {"other", other}},
+                  .writes = {{"error", Format::RG32F, flow.spec(shadow).extent, errorChannels}}};
+    if (isTruth)
+        std::get<Compute>(pass.work).defines.push_back({"TRUTH"});
+    else
+        pass.reads.push_back({"depth", surfaces.buffer.depth});
+    return flow.pass(compareScope, pass);
+}
+
+// One image, or two with a line between them.
+Image show(Flow& flow, const Session& session, Image shown, std::optional<Image> other = {}) {
+    const Comparison& comparison = session.comparison;
+    Extent extent = flow.spec(shown).extent;
+    DisplayConstants constants{{std::exp2(session.display.exposure), static_cast<float>(session.display.show), 0, 0},
+                               vec4(0),
+                               vec4(comparison.gain, 0, 0, 0)};
+    PassSpec pass{.stage = Stage::Display,
+                  .name = "display",
+                  .work = Compute{"display.glsl"},
+                  .reads = {{"shown", shown}}};
+    if (other) {
+        std::get<Compute>(pass.work).defines.push_back({"COMPARED"});
+        if (comparison.exchanged) std::swap(shown, *other);
+        const auto width = static_cast<float>(extent.width);
+        switch (comparison.as) {
+        case CompareAs::Wipe: constants.halves.x = std::round(comparison.line * width); break;
+        case CompareAs::SideBySide:
+            constants.halves = vec4(width, width, 0, 0);
+            extent.width *= 2;
+            break;
+        case CompareAs::Flip:
+        case CompareAs::Error: constants.halves.x = width; break;
+        }
+        pass.reads = {{"shown", shown}, {"other", *other}};
+    } else if (session.comparing() && comparison.as == CompareAs::Error) {
+        std::get<Compute>(pass.work).defines.push_back({"ERROR_MAP"});
+    }
+    pass.writes = {{"display", Format::RGBA8, extent, displayChannels}};
+    pass.constants = constants;
+    return flow.pass(frameScope, pass);
 }
 
 } // namespace
@@ -132,11 +185,32 @@ Frame buildFrame(Flow& flow, const Session& session, const SceneState& state, co
     const Surfaces surfaces = drawSurfaces(flow, view, state, geometry, lastClipFromWorld);
     const Inputs inputs{view,          session.light, surfaces.buffer, geometry, state.poseVersion(), state.occluders(),
                         session.frame, session.seed, session.progressive};
-    const Scope instance{.instance = {}, .owner = session.techniques.card().id};
-    const Image shadow = session.techniques.technique().build(flow, instance, inputs);
-    const bool lit = session.display.show == Show::Lit;
-    const Image display = show(flow, session, lit ? shade(flow, session, view, surfaces, shadow) : shadow);
-    return {shadow, display, surfaces.buffer.depth};
+    // Two techniques are instances a and b of one frame; what they need alike, such as the geometry buffer, is made once.
+    const Comparison& comparison = session.comparison;
+    const bool two = comparison.against == Against::Technique, lit = session.display.show == Show::Lit;
+    const auto build = [&](const TechniqueShelf& shelf, std::string_view instance) {
+        return shelf.technique().build(flow, {instance, shelf.card().id}, inputs);
+    };
+    const Image shadow = build(session.techniques, two ? "a" : "");
+    std::optional<Image> rival, other; // what is compared with
+    if (two) rival = other = build(session.rival, "b");
+    if (const TruthImage* known = session.currentTruth()) {
+        const Image truth = supply(flow, *known, view.size);
+        if (comparison.against == Against::Truth) other = truth;
+    }
+
+    const auto seen = [&](Image image, Scope scope) {
+        return lit ? shade(flow, scope, session, view, surfaces, image) : image;
+    };
+    const auto display = [&] {
+        const Scope own{.instance = two ? "a" : "", .owner = {}};
+        if (!other) return show(flow, session, seen(shadow, own));
+        if (comparison.as == CompareAs::Error)
+            return show(flow, session, subtract(flow, surfaces, shadow, *other, !two));
+        return show(flow, session, seen(shadow, own),
+                    seen(*other, two ? Scope{.instance = "b", .owner = {}} : truthScope));
+    };
+    return {shadow, rival, display(), surfaces.buffer.depth};
 }
 
 } // namespace penumbra

@@ -9,9 +9,10 @@
 namespace penumbra {
 
 struct Frame {
-    Image shadow;  // ψ
-    Image display; // RGBA8, sRGB
-    Image depth;   // of the surfaces seen, along the view axis [m]; 0: none
+    Image shadow;               // ψ
+    std::optional<Image> rival; // ψ of technique B, where the picture compares two
+    Image display;              // RGBA8, sRGB; twice as wide as the view where two stand side by side
+    Image depth;                // of the surfaces seen, along the view axis [m]; 0: none
 };
 
 // Appends the passes of a session's frame to a flow that has begun. `geometry` may be null: the passes are listed all

@@ -64,6 +64,9 @@ public:
     // Images of the last frame. `shadow` is ψ; `display` is RGBA8, sRGB encoded, row 0 below as OpenGL has it.
     Image display() const { return frame_->display; }
     Image shadow() const { return frame_->shadow; }
+    const std::optional<Image>& rival() const { return frame_->rival; } // ψ of technique B
+    Image depth() const { return frame_->depth; }
+    const View& view() const { return view_; }
     // The display image of the frame that was finished last; null if there is none, or the last attempt failed.
     const Texture* picture() const { return picture_.get(); }
     // The surface that picture() shows at a pixel, counted from its upper left corner; nothing where there is none.

@@ -58,6 +58,14 @@ void TechniqueShelf::assign(std::string_view assignment) const {
     set.at(qualified ? name.substr(dot + 1) : name).setText(assignment.substr(equals + 1));
 }
 
+TruthKey Session::truthKey() const {
+    return {scene, camera, light.shape, light.position, light.target, light.size, clip, time, ground, seed, size};
+}
+
+const TruthImage* Session::currentTruth() const {
+    return truth && truth->key == truthKey() ? truth.get() : nullptr;
+}
+
 OpenedScene::OpenedScene(std::shared_ptr<const Scene> opened) : scene(std::move(opened)) {
     Pose pose;
     evaluatePose(*scene, 0, 0, pose);

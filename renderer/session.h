@@ -66,6 +66,42 @@ struct OpenedScene {
     explicit OpenedScene(std::shared_ptr<const Scene> opened);
 };
 
+// What the picture sets beside the technique, which is A: the truth or technique B.
+enum class Against { Nothing, Truth, Technique };
+enum class CompareAs { Wipe, Flip, SideBySide, Error };
+struct Comparison {
+    Against against = Against::Nothing;
+    CompareAs as = CompareAs::Wipe;
+    float line = 0.5f;      // of the wipe: share of the picture's width, A is left of it
+    bool exchanged = false; // A and B have changed places
+    float gain = 1;         // of the error map: ±1 / gain has the strongest colours
+    // Two whole pictures beside each other, also while one of them is still missing.
+    bool sideBySide() const { return against != Against::Nothing && as == CompareAs::SideBySide; }
+    bool operator==(const Comparison&) const = default;
+};
+
+// All that decides ψ*: equal keys, equal truths.
+struct TruthKey {
+    std::shared_ptr<const Scene> scene;
+    Camera camera;
+    LightShape shape;
+    glm::vec3 position, target; // of the light
+    glm::vec2 lightSize;
+    size_t clip;
+    double time;
+    bool ground;
+    uint32_t seed;
+    glm::ivec2 size;
+    bool operator==(const TruthKey&) const = default;
+};
+
+// ψ* as an image; measure/yardstick.h makes it.
+struct TruthImage {
+    TruthKey key; // of what it is the truth
+    // Two floats a pixel, row 0 below: ψ*, and 1 where errors are counted.
+    std::shared_ptr<const std::vector<float>> texels;
+};
+
 struct Session {
     std::shared_ptr<const Scene> scene;
     Camera camera;
@@ -73,6 +109,9 @@ struct Session {
     bool ground = false; // the extra plane below the scene
     TechniqueShelf techniques;
     DisplaySettings display;
+    Comparison comparison;
+    TechniqueShelf rival;                    // technique B
+    std::shared_ptr<const TruthImage> truth; // if it is wanted and there is one
     size_t clip = 0;     // of the scene's animations
     double time = 0;     // of the clip [s]
     double timeStep = 0; // how far it moves from frame to frame [s]; 0: a still scene
@@ -81,6 +120,15 @@ struct Session {
     bool progressive = false; // techniques may spread long work over frames: for a window that must stay alive
     glm::ivec2 size{1280, 720};
     uint64_t textureLimit = uint64_t{4} << 30; // bytes
+
+    TruthKey truthKey() const;
+    // The truth of the picture as it is now; null if there is none.
+    const TruthImage* currentTruth() const;
+    // Whether the picture shows something beside the technique.
+    bool comparing() const {
+        return comparison.against == Against::Technique ||
+               (comparison.against == Against::Truth && currentTruth() != nullptr);
+    }
 
     // Takes a scene and the camera, light and ground that suit it.
     void setScene(OpenedScene opened);

@@ -27,6 +27,11 @@ struct Keys {
     bool play = false;          // space
     bool buffers = false;       // B
     bool timings = false;       // T
+    bool truth = false;         // Y
+    bool ruler = false;         // U
+    bool exchange = false;      // X
+    bool alone = false;         // 0
+    bool wipe = false, flip = false, sideBySide = false, errorMap = false; // 1 2 3 4
     bool open = false;          // Ctrl+O
     bool picture = false;       // F12: of the view
     bool windowPicture = false; // Shift+F12: of the whole window
@@ -54,6 +59,12 @@ inline constexpr KeyHelp keyHelp[] = {
                "double click aims it, Home resets it, C takes the next light of the scene"},
     {"comma, period", "smaller or larger"},
     {"G", "show or hide its handles: drag centre, target or edge"},
+    {"Technique A beside the truth, or beside technique B", ""},
+    {"1  2  3  4", "wipe with a line to drag, flip, side by side, error map; 2 again flips, 4 again: × 10, × 100, × 1"},
+    {"0", "the technique alone"},
+    {"X", "A and B change places"},
+    {"Y", "trace the truth, show the errors"},
+    {"U", "penumbra ruler: drag its ends across a shadow's edge"},
     {"Images, in the buffers", ""},
     {"wheel, left drag", "zoom, move"},
     {"click, right click", "pin a texel, let it go"},

@@ -50,10 +50,17 @@ struct LightDirection {
 LightDirection lightDirection(const AreaLight& light);
 void setLightDirection(AreaLight& light, const LightDirection& direction);
 
+// A line across a shadow's edge; its ends in shares of the picture from the upper left corner.
+struct RulerLine {
+    glm::vec2 from{0.4f, 0.5f}, to{0.6f, 0.5f};
+};
+
 // What the panels and the keys of the view share.
 struct ViewSettings {
     float flySpeed = 0.2f; // scene sizes per second
     bool lightShown = false;
+    bool rulerShown = false;
+    RulerLine ruler;
 
     void changeSpeed(float notches); // a fourth faster each
 };

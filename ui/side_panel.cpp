@@ -16,9 +16,18 @@ Requests SidePanel::draw(Session& session, const SceneFacts& facts, Playback& pl
         timeControls(session, facts, playback);
         ImGui::PopID();
     }
-    if (section("Technique", true)) technique(session, requests);
-    if (section("Parameters", true)) parameters_.draw(session.techniques.parameters());
-    if (section("Presets", false)) presets(session, requests);
+    const bool two = session.comparison.against == Against::Technique;
+    if (section("Technique", true)) {
+        if (two) chooseEdited(session);
+        technique(shelf(session), requests);
+    }
+    if (section("Parameters", true)) parameters_.draw(shelf(session).parameters());
+    if (section("Presets", false)) {
+        if (two && editsRival_)
+            wrappedText(colour::muted, "Presets are those of technique A.");
+        else
+            presets(session, requests);
+    }
     if (section("Light", true)) {
         ImGui::PushID("light");
         light_.draw(session, facts, view);
@@ -148,13 +157,31 @@ void timeControls(Session& session, const SceneFacts& facts, Playback& playback)
     if (ImGui::IsItemHovered() && ImGui::IsMouseDoubleClicked(ImGuiMouseButton_Left)) playback.speed = 1;
 }
 
-void SidePanel::technique(Session& session, Requests& requests) {
-    const Card& card = session.techniques.card();
+TechniqueShelf& SidePanel::shelf(Session& session) const {
+    return session.comparison.against == Against::Technique && editsRival_ ? session.rival : session.techniques;
+}
+
+void SidePanel::chooseEdited(Session& session) {
+    if (toggleButton("  A  ", !editsRival_)) editsRival_ = false;
+    tooltip("Show and edit technique A");
+    ImGui::SameLine(0, 1);
+    if (toggleButton("  B  ", editsRival_)) editsRival_ = true;
+    tooltip("Show and edit technique B");
+    ImGui::SameLine();
+    if (ImGui::Button("Swap")) std::swap(session.techniques, session.rival);
+    tooltip("A becomes B and B becomes A, with all values");
+    ImGui::SameLine();
+    if (ImGui::Button("Copy A to B")) session.rival.take(session.techniques.parameters());
+    tooltip("Technique B becomes A with its values, to change one of them");
+}
+
+void SidePanel::technique(TechniqueShelf& shelf, Requests& requests) {
+    const Card& card = shelf.card();
     ImGui::SetNextItemWidth(-FLT_MIN);
     if (ImGui::BeginCombo("##technique", ShortText("{}", card.title).begin(), ImGuiComboFlags_HeightLarge)) {
         for (const Card* other : catalogue()) {
             if (ImGui::Selectable(ShortText("{}", other->title).begin(), other == &card) && other != &card) {
-                session.techniques.choose(other->id);
+                shelf.choose(other->id);
                 requests.restart = true;
             }
             tooltip(other->idea);

@@ -59,9 +59,12 @@ public:
 private:
     void scene(Session& session, const SceneFacts& facts, Requests& requests);
     void choices(const Scene& scene, Requests& requests);
-    void technique(Session& session, Requests& requests);
+    TechniqueShelf& shelf(Session& session) const; // of the technique that is edited
+    void chooseEdited(Session& session);
+    void technique(TechniqueShelf& shelf, Requests& requests);
     void presets(const Session& session, Requests& requests);
 
+    bool editsRival_ = false; // technique B, while there is one
     ParameterPanel parameters_;
     LightPanel light_;
     CameraPanel camera_;

@@ -148,6 +148,24 @@ double Recent::quantile(double fraction, size_t last) const {
     return std::lerp(sorted[below], sorted[above], place - static_cast<double>(below));
 }
 
+double costOf(const TimedFrame& timed, const Flow& flow, std::string_view instance) {
+    const auto belongs = [&](int label) {
+        const std::string_view text = flow.label(label);
+        return text.size() > instance.size() && text.starts_with(instance) && text[instance.size()] == '/';
+    };
+    // The pass of an image that has a name of the instance's, too.
+    const auto shared = [&](int label) {
+        return std::any_of(flow.aliases().begin(), flow.aliases().end(), [&](const std::pair<int, int>& alias) {
+            const Flow::ImageNode& image = flow.images()[static_cast<size_t>(alias.second)];
+            return belongs(alias.first) && flow.passes()[static_cast<size_t>(image.pass)].label == label;
+        });
+    };
+    double sum = 0;
+    for (const PassTime& time : timed.passes)
+        if (isCost(time.stage) && (belongs(time.label) || shared(time.label))) sum += time.milliseconds;
+    return sum;
+}
+
 void TimingsPanel::add(const TimedFrame& timed, uint64_t rendered, std::span<const uint32_t> work) {
     if (!std::equal(work.begin(), work.end(), work_.begin(), work_.end())) {
         work_.assign(work.begin(), work.end());

@@ -29,6 +29,9 @@ private:
     size_t count_ = 0, next_ = 0;
 };
 
+// What an instance of a frame costs (see below) [ms], passes included that it shares with another one.
+double costOf(const TimedFrame& timed, const Flow& flow, std::string_view instance);
+
 class TimingsPanel {
 public:
     // Takes note of the newest timed frame, if it is another one, when frame number `rendered` has just been rendered.

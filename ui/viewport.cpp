@@ -107,24 +107,46 @@ void Viewport::draw(Session& session, Renderer& renderer, const SceneFacts& fact
     const ImVec2 corner = ImGui::GetCursorScreenPos(), size = ImGui::GetContentRegionAvail();
     const glm::ivec2 pixels(std::lround(size.x * pixelsPerUnit), std::lround(size.y * pixelsPerUnit));
     if (size.x < 1 || size.y < 1 || pixels.x < 1 || pixels.y < 1) return;
-    session.size = glm::min(pixels, glm::ivec2(static_cast<int>(limits::pixels.max)));
+    const int panes = session.comparison.sideBySide() ? 2 : 1;
+    session.size = glm::clamp(pixels / glm::ivec2(panes, 1), glm::ivec2(1), glm::ivec2(int(limits::pixels.max)));
+    const glm::vec2 pane(panes > 1 ? static_cast<float>(session.size.x) / pixelsPerUnit : size.x, size.y);
     ImGui::InvisibleButton("viewport", size,
                            ImGuiButtonFlags_MouseButtonLeft | ImGuiButtonFlags_MouseButtonMiddle |
                                ImGuiButtonFlags_MouseButtonRight);
-    screen_ = {sessionView(session, facts.boundsWorld), vec(corner), vec(size)};
+    if (drag_ == Drag::None || pane_ >= panes)
+        pane_ = panes > 1 && ImGui::GetIO().MousePos.x >= corner.x + pane.x ? 1 : 0;
+    const auto paneCorner = [&](int i) { return vec(corner) + glm::vec2(static_cast<float>(i) * pane.x, 0); };
+    screen_ = {sessionView(session, facts.boundsWorld), paneCorner(pane_), pane};
     navigate(session, facts, keys, settings);
     const std::vector<std::string>& shaderErrors = renderer.pollShaders();
     render(session, renderer, timing, always);
     if (point_ && upToDate()) takePoint(session, renderer, facts.size);
-    // OpenGL's first row is the lowest.
-    if (const Texture* picture = renderer.picture())
-        ImGui::GetWindowDrawList()->AddImage(textureId(picture->name()), corner, {corner.x + size.x, corner.y + size.y},
-                                             {0, 1}, {1, 0});
+    if (const Texture* picture = renderer.picture()) {
+        // Of two pictures side by side the second may still be missing.
+        const bool whole = picture->extent().width >= panes * session.size.x;
+        const glm::vec2 end = vec(corner) + glm::vec2(whole ? static_cast<float>(panes) * pane.x : pane.x, pane.y);
+        // OpenGL's first row is the lowest.
+        ImGui::GetWindowDrawList()->AddImage(textureId(picture->name()), corner, vec(end), {0, 1}, {1, 0});
+    }
     screen_.view = sessionView(session, facts.boundsWorld);
-    if (lightDrawn_) drawLight(session);
-    if (ImGui::GetTime() < targetUntil_) drawTarget(session);
+    for (int i = 0; i < panes; ++i) {
+        screen_.corner = paneCorner(i);
+        drawOver(session, settings);
+    }
+    screen_.corner = vec(corner);
+    screen_.size = vec(size);
     if (ImGui::GetTime() < speedUntil_) drawSpeed(settings, facts.size);
     drawTroubles(shaderErrors);
+}
+
+// What lies over each picture.
+void Viewport::drawOver(const Session& session, const ViewSettings& settings) const {
+    ImDrawList& list = *ImGui::GetWindowDrawList();
+    list.PushClipRect(vec(screen_.corner), vec(screen_.corner + screen_.size), true);
+    if (lightDrawn_) drawLight(session);
+    if (ImGui::GetTime() < targetUntil_) drawTarget(session);
+    if (settings.rulerShown) drawRuler(settings.ruler, screen_, rulerGrip_);
+    list.PopClipRect();
 }
 
 // What the mouse drag of this frame does.
@@ -134,7 +156,9 @@ Motion Viewport::ofMouse() const {
     Motion motion;
     switch (drag_) {
     case Drag::None:
-    case Drag::Handle: break;
+    case Drag::Handle:
+    case Drag::Ruler:
+    case Drag::Line: break;
     case Drag::Orbit: // the camera's scene, or the light, follows the pointer
         motion.turn = degreesPerUnit * (dragsLight_ ? glm::vec2(units.x, -units.y) : glm::vec2(-units.x, units.y));
         break;
@@ -169,11 +193,25 @@ void Viewport::grab(const Keys& keys) {
         drag_ = Drag::Look;
     else if (ImGui::IsMouseDown(ImGuiMouseButton_Middle))
         drag_ = Drag::Pan;
+    else if (rulerGrip_ != RulerGrip::None)
+        drag_ = Drag::Ruler;
     else if (handle_ != LightHandle::None)
         drag_ = Drag::Handle;
+    else if (onLine_)
+        drag_ = Drag::Line;
     else
         drag_ = keys.shift ? Drag::Pan : keys.control ? Drag::Zoom : Drag::Orbit;
     if (drag_ == Drag::Look) dragsLight_ = false;
+}
+
+// What of the ruler and the wipe's line lies under the pointer.
+void Viewport::hover(const Session& session, const ViewSettings& settings, bool hovered) {
+    const glm::vec2 pointer = vec(ImGui::GetIO().MousePos);
+    const float reach = 0.55f * ImGui::GetFontSize();
+    rulerGrip_ = hovered && settings.rulerShown ? gripAt(settings.ruler, screen_, pointer, reach) : RulerGrip::None;
+    const float line = screen_.corner.x + session.comparison.line * screen_.size.x;
+    onLine_ = hovered && session.comparing() && session.comparison.as == CompareAs::Wipe &&
+              std::abs(pointer.x - line) <= reach;
 }
 
 void Viewport::navigate(Session& session, const SceneFacts& facts, const Keys& keys, ViewSettings& settings) {
@@ -187,6 +225,11 @@ void Viewport::navigate(Session& session, const SceneFacts& facts, const Keys& k
     if (drag_ == Drag::None)
         handle_ = hovered && lightDrawn_ ? handleAt(session.light, screen_, pointer, 0.55f * ImGui::GetFontSize())
                                          : LightHandle::None;
+    if (drag_ == Drag::None) hover(session, settings, hovered);
+    if (rulerGrip_ != RulerGrip::None)
+        ImGui::SetMouseCursor(rulerGrip_ == RulerGrip::Both ? ImGuiMouseCursor_ResizeAll : ImGuiMouseCursor_Hand);
+    else if (onLine_)
+        ImGui::SetMouseCursor(ImGuiMouseCursor_ResizeEW);
     if (keys.doubleClick && hovered && handle_ == LightHandle::None) {
         const glm::vec2 place = (pointer - screen_.corner) / screen_.size * glm::vec2(session.size);
         point_ = {glm::ivec2(place), keys.light};
@@ -197,6 +240,10 @@ void Viewport::navigate(Session& session, const SceneFacts& facts, const Keys& k
     const glm::vec2 delta = vec(io.MouseDelta);
     if (drag_ == Drag::Handle && delta != glm::vec2(0))
         dragHandle(session.light, handle_, screen_, pointer - delta, pointer, keys.shift, facts.size);
+
+    if (drag_ == Drag::Ruler) dragRuler(settings.ruler, rulerGrip_, screen_, delta);
+    if (drag_ == Drag::Line)
+        session.comparison.line = std::clamp((pointer.x - screen_.corner.x) / screen_.size.x, 0.0f, 1.0f);
 
     const auto apply = [&](const Motion& motion, bool toLight) {
         if (motion == Motion{}) return;
@@ -253,6 +300,17 @@ void Viewport::fingerprint(const Session& session, const Renderer& renderer) {
     append(now_, session.size);
     append(now_, session.seed);
     append(now_, renderer.shaderGeneration());
+    const Comparison& comparison = session.comparison;
+    append(now_, comparison.against);
+    append(now_, comparison.as);
+    append(now_, comparison.line);
+    append(now_, comparison.gain);
+    now_.push_back(comparison.exchanged);
+    append(now_, session.currentTruth());
+    if (comparison.against == Against::Technique) {
+        append(now_, &session.rival.card());
+        for (const Parameter* parameter : session.rival.parameters().all()) now_.push_back(parameter->bits());
+    }
     now_.push_back(session.ground);
 }
 
@@ -293,7 +351,6 @@ void Viewport::drawLight(const Session& session) const {
     const float em = ImGui::GetFontSize();
     const ImU32 ink = ImGui::GetColorU32(colour::accent), bright = IM_COL32(255, 255, 255, 255);
     const auto inkOf = [&](bool lit) { return lit ? bright : ink; };
-    list.PushClipRect(vec(screen_.corner), vec(screen_.corner + screen_.size), true);
     const auto line = [&](glm::vec3 fromWorld, glm::vec3 toWorld, bool lit) {
         if (const auto ends = screen_.project(fromWorld, toWorld)) inkLine(list, ends->first, ends->second, inkOf(lit));
     };
@@ -309,7 +366,6 @@ void Viewport::drawLight(const Session& session) const {
         inkCircle(list, *target, 0.4f * em, inkOf(lit), false);
         inkCircle(list, *target, 0.12f * em, inkOf(lit), true);
     }
-    list.PopClipRect();
     if (handle_ == LightHandle::None) return;
     const bool held = drag_ == Drag::Handle;
     ImGui::SetMouseCursor(handle_ == LightHandle::Width || handle_ == LightHandle::Height ? ImGuiMouseCursor_Hand

@@ -5,6 +5,7 @@
 #include "ui/keys.h"
 #include "ui/light_gizmo.h"
 #include "ui/navigation.h"
+#include "ui/ruler.h"
 #include "ui/scene_facts.h"
 #include "ui/widgets.h"
 
@@ -33,12 +34,14 @@ public:
     bool busy() const { return busy_; }                        // a frame is under way
 
 private:
-    enum class Drag { None, Orbit, Pan, Zoom, Look, Handle };
+    enum class Drag { None, Orbit, Pan, Zoom, Look, Handle, Ruler, Line };
 
     void navigate(Session& session, const SceneFacts& facts, const Keys& keys, ViewSettings& settings);
     Motion ofMouse() const;
     Motion ofKeys(const Keys& keys, const ViewSettings& settings, float sceneSize) const;
     void grab(const Keys& keys);
+    void hover(const Session& session, const ViewSettings& settings, bool hovered);
+    void drawOver(const Session& session, const ViewSettings& settings) const;
     void render(Session& session, Renderer& renderer, Timing timing, bool always);
     void takePoint(Session& session, const Renderer& renderer, float sceneSize);
     void drawLight(const Session& session) const;
@@ -48,8 +51,11 @@ private:
     void fingerprint(const Session& session, const Renderer& renderer);
     float unit() const; // of a drag: a pixel at 96 dots per inch [window units]
 
-    ScreenView screen_; // as the camera stood when the call began
+    ScreenView screen_; // the picture that the pointer is on; as the camera stood when the call began
+    int pane_ = 0;      // of two pictures side by side, which one that is
     Drag drag_ = Drag::None;
+    RulerGrip rulerGrip_ = RulerGrip::None; // under the pointer, or held
+    bool onLine_ = false;                   // the pointer is on the wipe's line, or holds it
     bool dragsLight_ = false;                // instead of the camera
     LightHandle handle_ = LightHandle::None; // under the pointer, or held
     bool lightDrawn_ = false;

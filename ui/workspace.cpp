@@ -63,7 +63,8 @@ Workspace::Workspace(Session& session, Renderer& renderer, SceneLoader& loader, 
     , renderer_(renderer)
     , loader_(loader)
     , actions_(std::move(actions))
-    , facts_(session.scene) {
+    , facts_(session.scene)
+    , yardstick_(actions_.truthCache) {
     playback_.playing = session.timeStep != 0;
     side_.setPresetNames(actions_.presetNames());
 }
@@ -137,6 +138,10 @@ void Workspace::draw(const Keys& keys, float seconds, float pixelsPerUnit) {
     if (beginFixed("view", {0, barHeight}, {left, viewHeight},
                    ImGuiWindowFlags_NoScrollbar | ImGuiWindowFlags_NoScrollWithMouse)) {
         viewport_.draw(session_, renderer_, facts_, keys, view_, timing(), drawer_ == Drawer::Timings, pixelsPerUnit);
+        yardstick_.snapshotsWanted = view_.rulerShown;
+        yardstick_.update(session_, renderer_, viewport_.frames(), viewport_.upToDate());
+        if (renderer_.hasFrame())
+            compare_.overlay(session_, yardstick_, view_, {0, barHeight}, {left, viewHeight}, costs());
         if (loader_.progress())
             loadingBar({0, barHeight + viewHeight}, left, keys.escape);
         else
@@ -169,6 +174,7 @@ void Workspace::strokes(const Keys& keys) {
     if (keys.restart) viewport_.restart();
     if (keys.show) session_.display.show = session_.display.show == Show::Lit ? Show::Shadow : Show::Lit;
     if (keys.play) playback_.playing = !playback_.playing;
+    compare_.strokes(keys, session_, yardstick_, view_);
     if (keys.buffers) toggle(Drawer::Buffers);
     if (keys.timings) toggle(Drawer::Timings);
     if (keys.next) say(keys.light ? side_.light().next(session_, facts_) : side_.camera().next(session_, facts_));
@@ -203,6 +209,8 @@ void Workspace::bar(ImVec2 size) {
         ImGui::SameLine();
         if (toggleButton("Timings", drawer_ == Drawer::Timings)) toggle(Drawer::Timings);
         tooltip("What each pass costs (T)");
+        ImGui::SameLine();
+        compare_.button(session_, yardstick_, view_);
         ImGui::SameLine();
         if (ImGui::Button("Help")) openHelp_ = true;
         tooltip("Keys and mouse (H)");
@@ -390,6 +398,17 @@ void Workspace::noteTimes() {
     work_.push_back(static_cast<uint32_t>(session_.size.y));
     const PassTimer& timer = renderer_.runner().timer();
     timings_.add(timer.newest(), timer.frame(), work_);
+    if (timer.newest().number == costsFrame_) return;
+    costsFrame_ = timer.newest().number;
+    for (size_t i = 0; i < costs_.size(); ++i)
+        costs_[i].add(costOf(timer.newest(), renderer_.flow(), i == 0 ? "a" : "b"));
+}
+
+// Medians of A and B [ms].
+std::array<double, 2> Workspace::costs() const {
+    if (session_.comparison.against != Against::Technique) return {timings_.costMedian(), 0};
+    constexpr size_t newest = 15; // frames
+    return {costs_[0].quantile(0.5, newest), costs_[1].quantile(0.5, newest)};
 }
 
 void Workspace::exportTimings() {

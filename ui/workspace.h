@@ -3,6 +3,7 @@
 #pragma once
 
 #include "ui/buffer_panel.h"
+#include "ui/compare_panel.h"
 #include "ui/file_chooser.h"
 #include "ui/side_panel.h"
 #include "ui/timings_panel.h"
@@ -31,6 +32,7 @@ struct Actions {
     std::function<std::filesystem::path(const std::string& csv)> saveTimings; // where it is
     std::function<std::filesystem::path()> picturesFolder;
     std::function<void(const std::filesystem::path& folder)> setPicturesFolder; // from now on
+    TruthCache* truthCache = nullptr;                                           // of truths that are known already
 };
 
 class Workspace {
@@ -67,6 +69,7 @@ private:
     void pictureMenu();
     void collectSaved();
     void noteTimes();
+    std::array<double, 2> costs() const;
     void exportTimings();
     void dialogs(const Keys& keys);
     void helpDialog(bool close);
@@ -87,6 +90,10 @@ private:
     ViewSettings view_;
     SidePanel side_;
     Viewport viewport_;
+    Yardstick yardstick_;
+    ComparePanel compare_;
+    std::array<Recent, 2> costs_; // of A and B, where there are two [ms]
+    uint64_t costsFrame_ = 0;     // of the timer, that they were taken from last
     BufferPanel buffers_;
     TimingsPanel timings_;
     FileChooser chooser_, folderChooser_{FileChooser::Pick::Folder};

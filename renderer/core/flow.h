@@ -114,6 +114,13 @@ struct PoseVertices {
     bool operator==(const PoseVertices&) const = default;
 };
 
+// Texels from the processor's memory into the one written image: all channels as floats, row 0 below as OpenGL has it.
+// They are sent when they are others than the last frame's.
+struct Supply {
+    std::shared_ptr<const std::vector<float>> texels;
+    bool operator==(const Supply&) const = default;
+};
+
 // The bytes of the std140 block `Constants` (binding 0) of a pass.
 class Constants {
 public:
@@ -134,7 +141,7 @@ private:
     size_t size_ = 0;
 };
 
-using Work = std::variant<Compute, Draw, PoseVertices>;
+using Work = std::variant<Compute, Draw, PoseVertices, Supply>;
 
 struct PassSpec {
     Stage stage = Stage::Resolve;

@@ -38,12 +38,16 @@ size_t partsOf(const Flow& flow, const Flow::PassNode& pass) {
     return draw && draw->geometry ? draw->geometry->pieces() : 1;
 }
 
-const Defines& definesOf(const Work& work) {
-    return std::visit([](const auto& w) -> const Defines& { return w.defines; }, work);
-}
-
-std::string_view shaderOf(const Work& work) {
-    return std::visit([](const auto& w) { return w.shader; }, work);
+// Of a pass that has a shader.
+struct ShaderChoice {
+    std::string_view shader;
+    const Defines& defines;
+};
+ShaderChoice shaderOf(const Work& work) {
+    if (const Draw* draw = std::get_if<Draw>(&work)) return {draw->shader, draw->defines};
+    if (const PoseVertices* pose = std::get_if<PoseVertices>(&work)) return {pose->shader, pose->defines};
+    const Compute& compute = std::get<Compute>(work);
+    return {compute.shader, compute.defines};
 }
 
 } // namespace
@@ -83,6 +87,7 @@ void FlowRunner::allocate(const Flow& flow, int label, int turn, const ImageSpec
         slot->spec = spec;
         slot->texture = std::move(texture);
         slot->lastUsed = frame_;
+        slot->supplied.reset();
     } else {
         slots_.push_back(std::make_unique<Slot>(Slot{label, turn, spec, std::move(texture), frame_}));
     }
@@ -111,10 +116,11 @@ const Texture& FlowRunner::texture(const Flow& flow, PastImage image) const {
 const Program& FlowRunner::program(const Flow::PassNode& pass, const char* variant) {
     const Draw* draw = std::get_if<Draw>(&pass.work);
     const ProgramKind kind = draw ? ProgramKind::Raster : ProgramKind::Compute;
-    Defines defines = definesOf(pass.work);
+    const ShaderChoice choice = shaderOf(pass.work);
+    Defines defines = choice.defines;
     if (variant) defines.push_back({variant});
     if (draw && draw->geometry && draw->geometry->hasColours()) defines.push_back({"VERTEX_COLOURS"});
-    return programs_.get(kind, shaderOf(pass.work), defines, pass.parameters);
+    return programs_.get(kind, choice.shader, defines, pass.parameters);
 }
 
 void FlowRunner::bindReads(const Flow& flow, const Flow::PassNode& pass, const Program& program) {
@@ -172,6 +178,19 @@ void FlowRunner::dispatch(const Flow& flow, const Flow::PassNode& pass, size_t g
                     GL_FRAMEBUFFER_BARRIER_BIT);
     at_.lastParts = band.count();
     at_.parts += at_.lastParts;
+}
+
+void FlowRunner::supply(const Flow& flow, const Flow::PassNode& pass, const Supply& work) {
+    Slot& slot = const_cast<Slot&>(slotOf(flow, pass.writes[0]));
+    if (slot.supplied == work.texels) return;
+    const Extent& extent = slot.spec.extent;
+    ensure(work.texels->size() == static_cast<size_t>(extent.width) * static_cast<size_t>(extent.height) *
+                                      static_cast<size_t>(info(slot.spec.format).channels),
+           "supplied texels do not fill their image");
+    const GlFormat format = glFormat(slot.spec.format);
+    glTextureSubImage2D(slot.texture->name(), 0, 0, 0, extent.width, extent.height, format.layout, GL_FLOAT,
+                        work.texels->data());
+    slot.supplied = work.texels;
 }
 
 // At most so many pieces more.
@@ -250,6 +269,10 @@ void FlowRunner::begin(const Flow& flow, Timing timing) {
     size_t uniformBytes = 0;
     chosen_.clear();
     for (const Flow::PassNode& pass : flow.passes()) {
+        if (std::holds_alternative<Supply>(pass.work)) {
+            chosen_.push_back({});
+            continue;
+        }
         const Draw* draw = std::get_if<Draw>(&pass.work);
         const Program* plain = &program(pass);
         chosen_.push_back({plain, draw && draw->textured ? &program(pass, "TEXTURED") : plain,
@@ -319,6 +342,9 @@ void FlowRunner::runPart(const Flow& flow, std::optional<double> millisecondsLef
         runDraw(flow, pass, *draw, millisecondsLeft && all > 1 ? nextBand(all, 1, *millisecondsLeft) : all);
     } else if (const PoseVertices* poseVertices = std::get_if<PoseVertices>(&pass.work)) {
         poseVertices->geometry->pose(*chosen_[at_.pass].plain);
+        at_.parts = 1;
+    } else if (const Supply* supplied = std::get_if<Supply>(&pass.work)) {
+        supply(flow, pass, *supplied);
         at_.parts = 1;
     } else {
         const bool divisible = chosen_[at_.pass].plain->bandOrigin() >= 0 && all > 1;

@@ -58,6 +58,7 @@ private:
         ImageSpec spec;
         std::shared_ptr<Texture> texture;
         uint64_t lastUsed;
+        std::shared_ptr<const std::vector<float>> supplied = {}; // what it holds, if a Supply pass writes it
     };
     // What was chosen for a pass when the frame began; parameters may change under way.
     struct Programs {
@@ -92,6 +93,7 @@ private:
     const Program& program(const Flow::PassNode& pass, const char* variant = nullptr); // with a define more
     void bindReads(const Flow& flow, const Flow::PassNode& pass, const Program& program);
     void bindWrites(const Flow& flow, const Flow::PassNode& pass, const Program& program);
+    void supply(const Flow& flow, const Flow::PassNode& pass, const Supply& work);
     void runDraw(const Flow& flow, const Flow::PassNode& pass, const Draw& draw, size_t pieces);
     void dispatch(const Flow& flow, const Flow::PassNode& pass, size_t groups);
     Pace& paceOf(const Flow& flow, const Flow::PassNode& pass);

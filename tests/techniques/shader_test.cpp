@@ -50,8 +50,8 @@ template <class Each> void forEachStage(const Session& session, Each&& each) {
             }
         } else if (const Compute* compute = std::get_if<Compute>(&pass.work)) {
             add(ProgramKind::Compute, compute->shader, compute->defines, nullptr);
-        } else {
-            add(ProgramKind::Compute, std::get<PoseVertices>(pass.work).shader, {}, nullptr);
+        } else if (const PoseVertices* pose = std::get_if<PoseVertices>(&pass.work)) {
+            add(ProgramKind::Compute, pose->shader, {}, nullptr);
         }
     }
 }
