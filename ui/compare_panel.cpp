@@ -50,7 +50,7 @@ void legend(ImVec2 corner, float gain) {
     ImVec4 paper = ImGui::GetStyleColorVec4(ImGuiCol_PopupBg);
     paper.w = 0.85f;
     const float pad = 0.5f * em;
-    list.AddRectFilled(corner, {corner.x + width + 2 * pad, corner.y + height + 2.6f * em + 2 * pad},
+    list.AddRectFilled(corner, {corner.x + width + 2 * pad, corner.y + height + 2.5f * em + pad},
                        ImGui::GetColorU32(paper), 0.3f * em);
     const ImVec2 at{corner.x + pad, corner.y + pad};
     constexpr int steps = 32;
@@ -115,6 +115,7 @@ void ComparePanel::strokes(const Keys& keys, Session& session, Yardstick& yardst
         if (!chosen) compare(session, yardstick, last_);
         return chosen;
     };
+    close_ = keys.escape;
     if (keys.truth) wantTruth(session, yardstick, !yardstick.truthWanted);
     if (keys.ruler) view.rulerShown = !view.rulerShown;
     if (keys.alone) compare(session, yardstick, Against::Nothing);
@@ -135,6 +136,7 @@ void ComparePanel::button(Session& session, Yardstick& yardstick, ViewSettings& 
     ImGui::SetNextWindowSize({std::min(30 * ImGui::GetFontSize(), 0.95f * ImGui::GetIO().DisplaySize.x), 0});
     if (!ImGui::BeginPopup("compare")) return;
     popup(session, yardstick, view);
+    if (close_) ImGui::CloseCurrentPopup();
     ImGui::EndPopup();
 }
 
@@ -142,7 +144,7 @@ void ComparePanel::popup(Session& session, Yardstick& yardstick, ViewSettings& v
     Comparison& comparison = session.comparison;
     row("Truth ψ*");
     bool wanted = yardstick.truthWanted;
-    if (ImGui::Checkbox("traced rays   Y", &wanted)) wantTruth(session, yardstick, wanted);
+    if (ImGui::Checkbox("traced rays (Y)", &wanted)) wantTruth(session, yardstick, wanted);
     tooltip("Traces, in the background, for every pixel the share of the light that its surface does not see, and shows "
             "how far the technique is from it");
     const auto against = [&](const char* name, Against value, const char* help) {
@@ -150,7 +152,7 @@ void ComparePanel::popup(Session& session, Yardstick& yardstick, ViewSettings& v
         tooltip(help);
     };
     row("Show A beside");
-    against("nothing   0", Against::Nothing, "The technique alone");
+    against("nothing (0)", Against::Nothing, "The technique alone");
     row("");
     against("the truth", Against::Truth, "The same picture with the truth as its shadows");
     row("");
@@ -162,24 +164,24 @@ void ComparePanel::popup(Session& session, Yardstick& yardstick, ViewSettings& v
         tooltip(help);
     };
     row("As");
-    as("wipe   1", CompareAs::Wipe, "A left and B right of a line to drag");
+    as("wipe (1)", CompareAs::Wipe, "A left and B right of a line to drag");
     row("");
-    as("flip   2", CompareAs::Flip, "One at a time; X or 2 flips");
+    as("flip (2)", CompareAs::Flip, "One at a time; X or 2 flips");
     row("");
-    as("side by side   3", CompareAs::SideBySide, "Two pictures from one camera");
+    as("side by side (3)", CompareAs::SideBySide, "Two pictures from one camera");
     row("");
-    as("error map   4", CompareAs::Error, "ψ of A minus that of B: red where A is too dark, blue where it is too light");
+    as("error map (4)", CompareAs::Error, "ψ of A minus that of B: red where A is too dark, blue where it is too light");
     row("Errors times");
     for (const float gain : gains) {
         if (gain != gains[0]) ImGui::SameLine();
         if (ImGui::RadioButton(ShortText("{:g}", gain).begin(), comparison.gain == gain)) comparison.gain = gain;
     }
     row("Places");
-    ImGui::Checkbox("exchanged   X", &comparison.exchanged);
+    ImGui::Checkbox("exchanged (X)", &comparison.exchanged);
     tooltip("B where A was, and A where B was");
     ImGui::EndDisabled();
     row("Penumbra ruler");
-    ImGui::Checkbox("shown   U", &view.rulerShown);
+    ImGui::Checkbox("shown (U)", &view.rulerShown);
     tooltip("A line to drag across a shadow's edge: ψ along it, and the width of the penumbra");
 }
 
@@ -193,7 +195,9 @@ void ComparePanel::overlay(const Session& session, Yardstick& yardstick, const V
     const ShortText &first = comparison.exchanged ? b : a, &second = comparison.exchanged ? a : b;
     const float top = corner.y + gap;
     if (comparison.against == Against::Truth && !session.comparing()) {
-        label(corner.x + gap, top, 0, ShortText("{}    the truth is on its way", a.view()));
+        label(corner.x + gap, top, 0,
+              ShortText("{}    {}", a.view(),
+                        yardstick.tracing().running ? "the truth is on its way" : "the truth comes when the view rests"));
     } else if (comparison.against != Against::Nothing) {
         switch (comparison.as) {
         case CompareAs::Wipe: {
@@ -226,8 +230,9 @@ void ComparePanel::overlay(const Session& session, Yardstick& yardstick, const V
     const float most = std::max(size.x - 2 * gap, 1.0f), line = ImGui::GetTextLineHeightWithSpacing();
     const float wide = std::min((two ? twoNumbersWidth : numbersWidth) * em, most);
     if (yardstick.truthWanted || two) {
-        float lines = (yardstick.truthWanted ? 6.0f : 2.0f);
-        float height = lines * line + 2 * gap;
+        const float rows = (yardstick.truthWanted ? 6.0f : 2.0f) + (two ? 1.0f : 0.0f);
+        const float row = ImGui::GetTextLineHeight() + 2 * ImGui::GetStyle().CellPadding.y;
+        float height = rows * row + 2 * gap + line - row;
         if (yardstick.truthWanted) height += ImGui::GetFrameHeightWithSpacing() + line;
         if (beginCorner("numbers", right, bottom, {wide, height})) numbers(session, yardstick, costs);
         endCorner();
@@ -235,7 +240,7 @@ void ComparePanel::overlay(const Session& session, Yardstick& yardstick, const V
     if (view.rulerShown) {
         const ImVec2 extent{wide, RulerPlot::height(yardstick) + 2 * gap};
         if (beginCorner("ruler", right, bottom, extent))
-            plot_.draw(view.ruler, yardstick, {session.techniques.card().title, session.rival.card().title});
+            plot_.draw(view.ruler, yardstick);
         endCorner();
     }
 }
@@ -243,6 +248,10 @@ void ComparePanel::overlay(const Session& session, Yardstick& yardstick, const V
 void ComparePanel::numbers(const Session& session, Yardstick& yardstick, std::array<double, 2> costs) {
     const bool two = session.comparison.against == Against::Technique;
     const auto& errors = yardstick.errors();
+    if (yardstick.truthWanted)
+        text(ShortText("{} against the truth", two ? "A and B" : "A").view());
+    else
+        text("A and B");
     if (ImGui::BeginTable("numbers", two ? 3 : 2, ImGuiTableFlags_SizingStretchProp)) {
         ImGui::TableSetupColumn("what", ImGuiTableColumnFlags_WidthStretch, 1.3f);
         const auto line = [&](std::string_view name, const char* help, auto&& value) {
@@ -258,9 +267,7 @@ void ComparePanel::numbers(const Session& session, Yardstick& yardstick, std::ar
         const auto error = [&](std::string_view name, const char* help, auto&& figure) {
             line(name, help, [&](size_t i) { return errors[i] ? figure(*errors[i]) : ShortText("–"); });
         };
-        line("", "", [&](size_t i) {
-            return two ? ShortText("{}", i ? "B" : "A") : ShortText("against the truth");
-        });
+        if (two) line("", "", [&](size_t i) { return ShortText("{}", i ? "B" : "A"); });
         if (yardstick.truthWanted) {
             error("RMSE", "Root of the mean squared error over all pixels that face the whole light",
                   [](const Errors& e) { return ShortText("{:.4f}", e.all.rmse); });
@@ -306,8 +313,10 @@ void ComparePanel::truthLine(const Session& session, Yardstick& yardstick) {
         const ShortText left = state.secondsLeft < 0 ? ShortText("{:.0f} %", 100 * state.share)
                                                      : ShortText("{:.0f} %, {:.0f} s left", 100 * state.share,
                                                                  std::ceil(state.secondsLeft));
+        ImGui::PushStyleColor(ImGuiCol_PlotHistogram, ImVec4(0.45f, 0.36f, 0.22f, 1)); // words lie over it
         ImGui::ProgressBar(static_cast<float>(state.share), {-width - ImGui::GetStyle().ItemSpacing.x, 0},
                            left.begin());
+        ImGui::PopStyleColor();
         if (buttonHere()) yardstick.cancel();
         tooltip("Leave the truth as good as it is");
     } else if (yardstick.cancelled()) {

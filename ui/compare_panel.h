@@ -26,6 +26,7 @@ private:
     void truthLine(const Session& session, Yardstick& yardstick);
 
     Against last_ = Against::Truth; // that was compared with
+    bool close_ = false;            // the choices
     RulerPlot plot_;
 };
 

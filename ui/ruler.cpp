@@ -21,7 +21,7 @@ std::pair<glm::vec2, glm::vec2> onScreen(const RulerLine& line, const ScreenView
 }
 
 int lines(const Yardstick& yardstick) {
-    const Snapshot* shot = yardstick.shot();
+    const Snapshot* shot = yardstick.snapshot();
     return 1 + (shot && !shot->shadow[1].empty()) + (yardstick.truth() != nullptr);
 }
 
@@ -77,10 +77,11 @@ float RulerPlot::height(const Yardstick& yardstick) {
     return plotHeight * ImGui::GetFontSize() + (1 + static_cast<float>(lines(yardstick))) * line;
 }
 
-void RulerPlot::draw(const RulerLine& line, const Yardstick& yardstick, std::array<std::string_view, 2> names) {
-    const Snapshot* shot = yardstick.shot();
+void RulerPlot::draw(const RulerLine& line, const Yardstick& yardstick) {
+    const Snapshot* shot = yardstick.snapshot();
     const Truth* truth = yardstick.truth();
     const float em = ImGui::GetFontSize();
+    text(colour::muted, "Penumbra, from ψ = 0.1 to 0.9");
     const ImVec2 corner = ImGui::GetCursorScreenPos();
     const ImVec2 size{ImGui::GetContentRegionAvail().x, plotHeight * em};
     ImGui::Dummy(size);
@@ -106,7 +107,7 @@ void RulerPlot::draw(const RulerLine& line, const Yardstick& yardstick, std::arr
     const std::array<std::span<const float>, 3> images{
         shot->shadow[0], shot->shadow[1], truth ? std::span<const float>(truth->psi) : std::span<const float>()};
     const std::array<ImVec4, 3> inks{colour::accent, ImVec4(0.45f, 0.70f, 0.95f, 1), colour::text};
-    const std::array<std::string_view, 3> titles{names[0], names[1], "truth"};
+    const std::array<std::string_view, 3> titles{"A", "B", "truth"};
     for (size_t i = 3; i-- > 0;) { // the technique above the others
         profiles_[i].clear();
         if (images[i].empty()) continue;

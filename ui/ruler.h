@@ -19,8 +19,8 @@ void drawRuler(const RulerLine& line, const ScreenView& screen, RulerGrip lit);
 // The plot and the widths.
 class RulerPlot {
 public:
-    // Draws into the current ImGui window, as wide as it is. `names` of the technique and of technique B.
-    void draw(const RulerLine& line, const Yardstick& yardstick, std::array<std::string_view, 2> names);
+    // Draws into the current ImGui window, as wide as it is.
+    void draw(const RulerLine& line, const Yardstick& yardstick);
     static float height(const Yardstick& yardstick); // that draw() needs
 
 private:

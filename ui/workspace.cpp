@@ -224,8 +224,11 @@ void Workspace::bar(ImVec2 size) {
 void Workspace::status() {
     const bool approximate = renderer_.softwareRenderer() && timedHow_ == Timing::Queries;
     const double frame = timings_.frameMedian(), cost = timings_.costMedian();
+    const ShortText costText = session_.comparison.against == Against::Technique
+                                   ? ShortText("cost {:.2f} + {:.2f} ms", costs()[0], costs()[1])
+                                   : ShortText("cost {:.2f} ms", cost);
     const ShortText time =
-        frame > 0 ? ShortText("cost {:.2f} ms    frame {:.2f} ms{}", cost, frame, approximate ? "  approximate" : "")
+        frame > 0 ? ShortText("{}    frame {:.2f} ms{}", costText.view(), frame, approximate ? "  approximate" : "")
                   : ShortText("– ms");
     ImGui::AlignTextToFramePadding();
     const float room = ImGui::GetContentRegionAvail().x;

@@ -12,7 +12,7 @@ namespace {
 using namespace std::chrono_literals;
 
 constexpr auto quiet = 200ms;    // without a change before a truth is begun
-constexpr auto shotPause = 100ms; // between two shots at least
+constexpr auto snapshotPause = 100ms; // between two shots at least
 
 // Row 0 at the top instead of below.
 template <class T> void turnOver(std::vector<T>& texels, int width) {
@@ -52,7 +52,7 @@ void Yardstick::forget(Session& session) {
     truth_.reset();
     session.truth.reset();
     coming_.reset();
-    shot_.reset();
+    snapshot_.reset();
     errors_ = {};
 }
 
@@ -103,10 +103,10 @@ void Yardstick::shoot(const Session& session, const Renderer& renderer, uint64_t
         bool all = take(depthBack_, coming_->depth);
         for (size_t i = 0; i < shadowBack_.size(); ++i) all = take(shadowBack_[i], coming_->shadow[i]) && all;
         if (!all) return;
-        shot_ = std::move(coming_);
+        snapshot_ = std::move(coming_);
         coming_.reset();
     }
-    const bool due = !shot_ || (frames != shotFrame_ && Clock::now() - shotTime_ >= shotPause);
+    const bool due = !snapshot_ || (frames != snapshotFrame_ && Clock::now() - snapshotTime_ >= snapshotPause);
     if (!due || !current || !renderer.hasFrame() || renderer.view().size != session.size) return;
     const auto start = [&](ReadBack& back, Image image) {
         back.start(renderer.runner().texture(renderer.flow(), image));
@@ -117,8 +117,8 @@ void Yardstick::shoot(const Session& session, const Renderer& renderer, uint64_t
     start(shadowBack_[0], renderer.shadow());
     shadowBack_[1].forget();
     if (renderer.rival()) start(shadowBack_[1], *renderer.rival());
-    shotFrame_ = frames;
-    shotTime_ = Clock::now();
+    snapshotFrame_ = frames;
+    snapshotTime_ = Clock::now();
 }
 
 void Yardstick::measure() {
@@ -128,12 +128,12 @@ void Yardstick::measure() {
         // Of an older view or of one that is not wanted any more?
         if (measured_.truth && truth_ && measured_.truth->hash == truth_->hash) errors_ = measured_.errors;
     }
-    if (!shot_ || !truth_ || (measured_.shot == shot_ && measured_.truth == truth_)) return;
-    measuring_ = std::async(std::launch::async, [shot = shot_, truth = truth_] {
+    if (!snapshot_ || !truth_ || (measured_.snapshot == snapshot_ && measured_.truth == truth_)) return;
+    measuring_ = std::async(std::launch::async, [snapshot = snapshot_, truth = truth_] {
         stepBack();
-        Measured measured{shot, truth, {}};
-        for (size_t i = 0; i < shot->shadow.size(); ++i)
-            if (!shot->shadow[i].empty()) measured.errors[i] = errorsOf(shot->shadow[i], *truth);
+        Measured measured{snapshot, truth, {}};
+        for (size_t i = 0; i < snapshot->shadow.size(); ++i)
+            if (!snapshot->shadow[i].empty()) measured.errors[i] = errorsOf(snapshot->shadow[i], *truth);
         return measured;
     });
 }

@@ -43,12 +43,12 @@ public:
     BackgroundTruth::State tracing() const { return background_.state(); }
     // Of the technique and of technique B against the truth; none before they are known.
     const std::array<std::optional<Errors>, 2>& errors() const { return errors_; }
-    const Snapshot* shot() const { return shot_.get(); }
+    const Snapshot* snapshot() const { return snapshot_.get(); }
 
 private:
     using Clock = std::chrono::steady_clock;
     struct Measured {
-        std::shared_ptr<const Snapshot> shot;
+        std::shared_ptr<const Snapshot> snapshot;
         std::shared_ptr<const Truth> truth;
         std::array<std::optional<Errors>, 2> errors;
     };
@@ -67,9 +67,9 @@ private:
     ReadBack depthBack_;
     std::array<ReadBack, 2> shadowBack_;
     std::shared_ptr<Snapshot> coming_; // whose images are on their way
-    std::shared_ptr<const Snapshot> shot_;
-    uint64_t shotFrame_ = 0;
-    Clock::time_point shotTime_;
+    std::shared_ptr<const Snapshot> snapshot_;
+    uint64_t snapshotFrame_ = 0;
+    Clock::time_point snapshotTime_;
 
     std::future<Measured> measuring_;
     Measured measured_; // what was measured last
