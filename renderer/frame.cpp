@@ -142,10 +142,8 @@ Image show(Flow& flow, const Session& session, Image shown, std::optional<Image>
     DisplayConstants constants{{std::exp2(session.display.exposure), static_cast<float>(session.display.show), 0, 0},
                                vec4(0),
                                vec4(comparison.gain, 0, 0, 0)};
-    PassSpec pass{.stage = Stage::Display,
-                  .name = "display",
-                  .work = Compute{"display.glsl"},
-                  .reads = {{"shown", shown}}};
+    PassSpec pass{
+        .stage = Stage::Display, .name = "display", .work = Compute{"display.glsl"}, .reads = {{"shown", shown}}};
     if (other) {
         std::get<Compute>(pass.work).defines.push_back({"COMPARED"});
         if (comparison.exchanged) std::swap(shown, *other);
@@ -183,9 +181,11 @@ Frame buildFrame(Flow& flow, const Session& session, const SceneState& state, co
     const View view = sessionView(session, state.bounds());
     pose(flow, state, geometry);
     const Surfaces surfaces = drawSurfaces(flow, view, state, geometry, lastClipFromWorld);
-    const Inputs inputs{view,          session.light, surfaces.buffer, geometry, state.poseVersion(), state.occluders(),
-                        session.frame, session.seed, session.progressive};
-    // Two techniques are instances a and b of one frame; what they need alike, such as the geometry buffer, is made once.
+    const Inputs inputs{view,          session.light,       surfaces.buffer,
+                        geometry,      state.poseVersion(), state.occluders(),
+                        session.frame, session.seed,        session.progressive};
+    // Two techniques are instances a and b of one frame; what they need alike, such as the geometry buffer, is made
+    // once.
     const Comparison& comparison = session.comparison;
     const bool two = comparison.against == Against::Technique, lit = session.display.show == Show::Lit;
     const auto build = [&](const TechniqueShelf& shelf, std::string_view instance) {

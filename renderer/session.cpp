@@ -62,9 +62,7 @@ TruthKey Session::truthKey() const {
     return {scene, camera, light.shape, light.position, light.target, light.size, clip, time, ground, seed, size};
 }
 
-const TruthImage* Session::currentTruth() const {
-    return truth && truth->key == truthKey() ? truth.get() : nullptr;
-}
+const TruthImage* Session::currentTruth() const { return truth && truth->key == truthKey() ? truth.get() : nullptr; }
 
 OpenedScene::OpenedScene(std::shared_ptr<const Scene> opened) : scene(std::move(opened)) {
     Pose pose;

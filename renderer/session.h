@@ -112,10 +112,10 @@ struct Session {
     Comparison comparison;
     TechniqueShelf rival;                    // technique B
     std::shared_ptr<const TruthImage> truth; // if it is wanted and there is one
-    size_t clip = 0;     // of the scene's animations
-    double time = 0;     // of the clip [s]
-    double timeStep = 0; // how far it moves from frame to frame [s]; 0: a still scene
-    uint32_t frame = 0;  // frames since the last reset
+    size_t clip = 0;                         // of the scene's animations
+    double time = 0;                         // of the clip [s]
+    double timeStep = 0;                     // how far it moves from frame to frame [s]; 0: a still scene
+    uint32_t frame = 0;                      // frames since the last reset
     uint32_t seed = 0;
     bool progressive = false; // techniques may spread long work over frames: for a window that must stay alive
     glm::ivec2 size{1280, 720};

@@ -18,21 +18,24 @@ using glm::max;
 using glm::min;
 using glm::pow;
 using glm::vec3;
-#include "shaders/lib/srgb.glsl"
 #include "shaders/lib/colour_map.glsl"
+#include "shaders/lib/srgb.glsl"
 } // namespace glsl
 #pragma GCC diagnostic pop
 
 constexpr float numbersWidth = 17, twoNumbersWidth = 22; // font heights
+constexpr float smallView = 28;                          // font heights
 constexpr std::array gains{1.0f, 10.0f, 100.0f};
 
 std::string_view other(const Session& session) {
     return session.comparison.against == Against::Technique ? session.rival.card().title : "truth";
 }
 
-// On dark paper. `align` 0: the text begins at x, 1: it ends there.
-void label(float x, float y, float align, const ShortText& line) {
+// On dark paper. `align` 0: the text begins at x, 1: it ends there; brief where it would be wider than `room`.
+void label(float x, float y, float align, const ShortText& whole, std::string_view brief, float room) {
     const float padding = 0.4f * ImGui::GetFontSize();
+    const bool fits = ImGui::CalcTextSize(whole.begin(), whole.end()).x + 2 * padding <= room;
+    const ShortText line("{}", fits ? whole.view() : brief);
     const ImVec2 extent = ImGui::CalcTextSize(line.begin(), line.end());
     const ImVec2 from{std::round(x - align * (extent.x + 2 * padding)), std::round(y)};
     ImVec4 paper = ImGui::GetStyleColorVec4(ImGuiCol_PopupBg);
@@ -131,9 +134,10 @@ void ComparePanel::button(Session& session, Yardstick& yardstick, ViewSettings& 
     const bool on = session.comparison.against != Against::Nothing || yardstick.truthWanted || view.rulerShown;
     if (toggleButton("Compare", on)) ImGui::OpenPopup("compare");
     tooltip("The technique beside the truth or beside another technique (1 2 3 4), errors (Y), penumbra ruler (U)");
-    ImGui::SetNextWindowPos(
-        {ImGui::GetItemRectMin().x, ImGui::GetItemRectMax().y + ImGui::GetStyle().FramePadding.y});
-    ImGui::SetNextWindowSize({std::min(30 * ImGui::GetFontSize(), 0.95f * ImGui::GetIO().DisplaySize.x), 0});
+    const float screen = ImGui::GetIO().DisplaySize.x, width = std::min(30 * ImGui::GetFontSize(), 0.95f * screen);
+    ImGui::SetNextWindowPos({std::min(ImGui::GetItemRectMin().x, screen - width),
+                             ImGui::GetItemRectMax().y + ImGui::GetStyle().FramePadding.y});
+    ImGui::SetNextWindowSize({width, 0});
     if (!ImGui::BeginPopup("compare")) return;
     popup(session, yardstick, view);
     if (close_) ImGui::CloseCurrentPopup();
@@ -145,8 +149,9 @@ void ComparePanel::popup(Session& session, Yardstick& yardstick, ViewSettings& v
     row("Truth ψ*");
     bool wanted = yardstick.truthWanted;
     if (ImGui::Checkbox("traced rays (Y)", &wanted)) wantTruth(session, yardstick, wanted);
-    tooltip("Traces, in the background, for every pixel the share of the light that its surface does not see, and shows "
-            "how far the technique is from it");
+    tooltip(
+        "Traces, in the background, for every pixel the share of the light that its surface does not see, and shows "
+        "how far the technique is from it");
     const auto against = [&](const char* name, Against value, const char* help) {
         if (ImGui::RadioButton(name, comparison.against == value)) compare(session, yardstick, value);
         tooltip(help);
@@ -170,7 +175,8 @@ void ComparePanel::popup(Session& session, Yardstick& yardstick, ViewSettings& v
     row("");
     as("side by side (3)", CompareAs::SideBySide, "Two pictures from one camera");
     row("");
-    as("error map (4)", CompareAs::Error, "ψ of A minus that of B: red where A is too dark, blue where it is too light");
+    as("error map (4)", CompareAs::Error,
+       "ψ of A minus that of B: red where A is too dark, blue where it is too light");
     row("Errors times");
     for (const float gain : gains) {
         if (gain != gains[0]) ImGui::SameLine();
@@ -192,33 +198,36 @@ void ComparePanel::overlay(const Session& session, Yardstick& yardstick, const V
     ImDrawList& list = *ImGui::GetWindowDrawList();
     list.PushClipRect(corner, {right, corner.y + size.y}, true);
     const ShortText a("A  {}", session.techniques.card().title), b("B  {}", other(session));
+    const std::string_view brief[] = {comparison.exchanged ? "B" : "A", comparison.exchanged ? "A" : "B"};
     const ShortText &first = comparison.exchanged ? b : a, &second = comparison.exchanged ? a : b;
     const float top = corner.y + gap;
     if (comparison.against == Against::Truth && !session.comparing()) {
-        label(corner.x + gap, top, 0,
-              ShortText("{}    {}", a.view(),
-                        yardstick.tracing().running ? "the truth is on its way" : "the truth comes when the view rests"));
+        label(
+            corner.x + gap, top, 0,
+            ShortText("{}    {}", a.view(),
+                      yardstick.tracing().running ? "the truth is on its way" : "the truth comes when the view rests"),
+            "A", size.x);
     } else if (comparison.against != Against::Nothing) {
         switch (comparison.as) {
         case CompareAs::Wipe: {
             const float x = std::round(corner.x + comparison.line * size.x);
             list.AddLine({x, corner.y}, {x, corner.y + size.y}, IM_COL32(0, 0, 0, 130), 0.3f * em);
             list.AddLine({x, corner.y}, {x, corner.y + size.y}, IM_COL32(255, 255, 255, 230), 0.1f * em);
-            label(x - gap, top, 1, first);
-            label(x + gap, top, 0, second);
+            label(x - gap, top, 1, first, brief[0], x - gap - corner.x);
+            label(x + gap, top, 0, second, brief[1], right - x - gap);
             break;
         }
-        case CompareAs::Flip: label(corner.x + gap, top, 0, first); break;
+        case CompareAs::Flip: label(corner.x + gap, top, 0, first, brief[0], size.x); break;
         case CompareAs::SideBySide: {
             const float x = std::round(corner.x + size.x / 2);
             list.AddLine({x, corner.y}, {x, corner.y + size.y}, IM_COL32(0, 0, 0, 255), 0.15f * em);
-            label(corner.x + gap, top, 0, first);
-            label(x + gap, top, 0, second);
+            label(corner.x + gap, top, 0, first, brief[0], size.x / 2 - gap);
+            label(x + gap, top, 0, second, brief[1], size.x / 2 - gap);
             break;
         }
         case CompareAs::Error:
             label(corner.x + gap, top, 0,
-                  ShortText("A − B    {} minus {}", session.techniques.card().title, other(session)));
+                  ShortText("A − B    {} minus {}", session.techniques.card().title, other(session)), "A − B", size.x);
             legend({corner.x + gap, top + 1.9f * em}, comparison.gain);
             break;
         }
@@ -229,29 +238,40 @@ void ComparePanel::overlay(const Session& session, Yardstick& yardstick, const V
     float bottom = corner.y + size.y;
     const float most = std::max(size.x - 2 * gap, 1.0f), line = ImGui::GetTextLineHeightWithSpacing();
     const float wide = std::min((two ? twoNumbersWidth : numbersWidth) * em, most);
+    const bool small = size.y < smallView * em, folded = folded_.value_or(small);
     if (yardstick.truthWanted || two) {
-        const float rows = (yardstick.truthWanted ? 6.0f : 2.0f) + (two ? 1.0f : 0.0f);
-        const float row = ImGui::GetTextLineHeight() + 2 * ImGui::GetStyle().CellPadding.y;
-        float height = rows * row + 2 * gap + line - row;
-        if (yardstick.truthWanted) height += ImGui::GetFrameHeightWithSpacing() + line;
-        if (beginCorner("numbers", right, bottom, {wide, height})) numbers(session, yardstick, costs);
+        float height = ImGui::GetTextLineHeight() + 2 * gap;
+        if (!folded) {
+            const float rows = (yardstick.truthWanted ? 5.0f : 1.0f) + (two ? 1.0f : 0.0f);
+            height = rows * (ImGui::GetTextLineHeight() + 2 * ImGui::GetStyle().CellPadding.y) + line + 2 * gap;
+            if (yardstick.truthWanted) height += ImGui::GetFrameHeightWithSpacing() + line;
+        }
+        if (beginCorner("numbers", right, bottom, {wide, height})) numbers(session, yardstick, costs, folded);
         endCorner();
     }
     if (view.rulerShown) {
-        const ImVec2 extent{wide, RulerPlot::height(yardstick) + 2 * gap};
-        if (beginCorner("ruler", right, bottom, extent))
-            plot_.draw(view.ruler, yardstick);
+        const ImVec2 extent{wide, RulerPlot::height(yardstick, small) + 2 * gap};
+        if (beginCorner("ruler", right, bottom, extent)) plot_.draw(view.ruler, yardstick, small);
         endCorner();
     }
 }
 
-void ComparePanel::numbers(const Session& session, Yardstick& yardstick, std::array<double, 2> costs) {
+void ComparePanel::numbers(const Session& session, Yardstick& yardstick, std::array<double, 2> costs, bool folded) {
     const bool two = session.comparison.against == Against::Technique;
     const auto& errors = yardstick.errors();
-    if (yardstick.truthWanted)
-        text(ShortText("{} against the truth", two ? "A and B" : "A").view());
-    else
-        text("A and B");
+    const bool one = folded && yardstick.truthWanted && errors[0];
+    const ShortText title =
+        one && !two ? ShortText("RMSE {:.4f}   in penumbrae {:.4f}", errors[0]->all.rmse, errors[0]->penumbra.rmse)
+        : one && errors[1]
+            ? ShortText("RMSE   A {:.4f}   B {:.4f}", errors[0]->all.rmse, errors[1]->all.rmse)
+            : ShortText("{}{}", two ? "A and B" : "A", yardstick.truthWanted ? " against the truth" : "");
+    if (ImGui::Selectable("##fold")) folded_ = !folded;
+    tooltip(folded ? "Show all numbers" : "Fold to one line");
+    ImGui::SameLine(ImGui::GetStyle().WindowPadding.x);
+    text(title.view());
+    ImGui::SameLine();
+    rightText(folded ? "▸" : "▾");
+    if (folded) return;
     if (ImGui::BeginTable("numbers", two ? 3 : 2, ImGuiTableFlags_SizingStretchProp)) {
         ImGui::TableSetupColumn("what", ImGuiTableColumnFlags_WidthStretch, 1.3f);
         const auto line = [&](std::string_view name, const char* help, auto&& value) {
@@ -271,18 +291,16 @@ void ComparePanel::numbers(const Session& session, Yardstick& yardstick, std::ar
         if (yardstick.truthWanted) {
             error("RMSE", "Root of the mean squared error over all pixels that face the whole light",
                   [](const Errors& e) { return ShortText("{:.4f}", e.all.rmse); });
-            error("in penumbrae", "The same over pixels whose truth lies between 0.01 and 0.99",
-                  [](const Errors& e) {
-                      return e.penumbraPixels ? ShortText("{:.4f}", e.penumbra.rmse) : ShortText("no penumbra");
-                  });
+            error("in penumbrae", "The same over pixels whose truth lies between 0.01 and 0.99", [](const Errors& e) {
+                return e.penumbraPixels ? ShortText("{:.4f}", e.penumbra.rmse) : ShortText("no penumbra");
+            });
             error("bias", "Mean error over all of them: positive where shadows are too dark",
                   [](const Errors& e) { return ShortText("{:+.4f}", e.all.bias); });
             error("99th percentile", "Ninety-nine of a hundred pixels are not farther from the truth",
                   [](const Errors& e) { return ShortText("{:.4f}", e.all.p99); });
         }
-        line("cost", "Milliseconds for shadow maps, prefilters and the technique itself", [&](size_t i) {
-            return costs[i] > 0 ? ShortText("{:.2f} ms", costs[i]) : ShortText("– ms");
-        });
+        line("cost", "Milliseconds for shadow maps, prefilters and the technique itself",
+             [&](size_t i) { return costs[i] > 0 ? ShortText("{:.2f} ms", costs[i]) : ShortText("– ms"); });
         ImGui::EndTable();
     }
     if (yardstick.truthWanted) truthLine(session, yardstick);
@@ -325,9 +343,9 @@ void ComparePanel::truthLine(const Session& session, Yardstick& yardstick) {
         if (buttonHere()) yardstick.resume();
     } else {
         ImGui::AlignTextToFramePadding();
-        text(colour::muted, truth && truth->complete   ? (truth->fromCache ? "done before" : "done")
-                            : session.timeStep != 0 ? "waits until time stands still"
-                                                    : "waits until the view rests");
+        text(colour::muted, truth && truth->complete ? (truth->fromCache ? "done before" : "done")
+                            : session.timeStep != 0  ? "waits until time stands still"
+                                                     : "waits until the view rests");
     }
 }
 

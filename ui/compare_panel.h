@@ -22,11 +22,12 @@ private:
     void compare(Session& session, Yardstick& yardstick, Against against);
     void wantTruth(Session& session, Yardstick& yardstick, bool wanted);
     void popup(Session& session, Yardstick& yardstick, ViewSettings& view);
-    void numbers(const Session& session, Yardstick& yardstick, std::array<double, 2> costs);
+    void numbers(const Session& session, Yardstick& yardstick, std::array<double, 2> costs, bool folded);
     void truthLine(const Session& session, Yardstick& yardstick);
 
     Against last_ = Against::Truth; // that was compared with
     bool close_ = false;            // the choices
+    std::optional<bool> folded_;    // the numbers, to one line; not chosen yet: in a small view
     RulerPlot plot_;
 };
 

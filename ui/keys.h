@@ -17,24 +17,24 @@ struct Keys {
     bool light = false; // L
     bool shift = false, control = false;
     // Whether they were struck in this frame.
-    bool help = false;          // H, F1
-    bool frameScene = false;    // F
-    bool reset = false;         // Home
-    bool next = false;          // C
-    bool handles = false;       // G
-    bool restart = false;       // R
-    bool show = false;          // V
-    bool play = false;          // space
-    bool buffers = false;       // B
-    bool timings = false;       // T
-    bool truth = false;         // Y
-    bool ruler = false;         // U
-    bool exchange = false;      // X
-    bool alone = false;         // 0
+    bool help = false;                                                     // H, F1
+    bool frameScene = false;                                               // F
+    bool reset = false;                                                    // Home
+    bool next = false;                                                     // C
+    bool handles = false;                                                  // G
+    bool restart = false;                                                  // R
+    bool show = false;                                                     // V
+    bool play = false;                                                     // space
+    bool buffers = false;                                                  // B
+    bool timings = false;                                                  // T
+    bool truth = false;                                                    // Y
+    bool ruler = false;                                                    // U
+    bool exchange = false;                                                 // X
+    bool alone = false;                                                    // 0
     bool wipe = false, flip = false, sideBySide = false, errorMap = false; // 1 2 3 4
-    bool open = false;          // Ctrl+O
-    bool picture = false;       // F12: of the view
-    bool windowPicture = false; // Shift+F12: of the whole window
+    bool open = false;                                                     // Ctrl+O
+    bool picture = false;                                                  // F12: of the view
+    bool windowPicture = false;                                            // Shift+F12: of the whole window
     bool escape = false;
     bool doubleClick = false; // of the left button
 };
@@ -42,7 +42,7 @@ struct Keys {
 struct KeyHelp {
     std::string_view keys, meaning; // no meaning: a title
 };
-inline constexpr std::string_view keyHelpSecondHalf = "Images, in the buffers"; // that far it is about the view
+inline constexpr std::string_view keyHelpSecondHalf = "Compare"; // that far it is about the view
 inline constexpr KeyHelp keyHelp[] = {
     {"Camera, in the view", ""},
     {"left drag,  arrow keys", "orbit round the target"},
@@ -59,8 +59,10 @@ inline constexpr KeyHelp keyHelp[] = {
                "double click aims it, Home resets it, C takes the next light of the scene"},
     {"comma, period", "smaller or larger"},
     {"G", "show or hide its handles: drag centre, target or edge"},
-    {"Technique A beside the truth, or beside technique B", ""},
-    {"1  2  3  4", "wipe with a line to drag, flip, side by side, error map; 2 again flips, 4 again: × 10, × 100, × 1"},
+    {"Compare", ""},
+    {"1  2  3  4",
+     "technique A beside the truth or B: wipe with a line to drag, flip, side by side, error map; 2 again "
+     "flips, 4 again: × 10, × 100, × 1"},
     {"0", "the technique alone"},
     {"X", "A and B change places"},
     {"Y", "trace the truth, show the errors"},

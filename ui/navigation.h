@@ -52,7 +52,7 @@ void setLightDirection(AreaLight& light, const LightDirection& direction);
 
 // A line across a shadow's edge; its ends in shares of the picture from the upper left corner.
 struct RulerLine {
-    glm::vec2 from{0.4f, 0.5f}, to{0.6f, 0.5f};
+    glm::vec2 from{0.4f, 0.4f}, to{0.6f, 0.4f};
 };
 
 // What the panels and the keys of the view share.

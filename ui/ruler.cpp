@@ -12,7 +12,7 @@ namespace {
 
 constexpr float samplesPerPixel = 2;
 constexpr float mostSamples = 4096;
-constexpr float plotHeight = 8; // font heights
+constexpr float plotHeight = 8, lowPlotHeight = 4.5f; // font heights
 
 ImVec2 vec(glm::vec2 v) { return {v.x, v.y}; }
 
@@ -33,7 +33,8 @@ ShortText widthText(const Snapshot& shot, glm::vec2 from, glm::vec2 to, std::spa
     };
     const glm::vec2 low = place(edge->at10), high = place(edge->at90);
     const float pixels = glm::distance(low, high);
-    const auto lowWorld = surfaceWorld(shot.view, shot.depth, low), highWorld = surfaceWorld(shot.view, shot.depth, high);
+    const auto lowWorld = surfaceWorld(shot.view, shot.depth, low),
+               highWorld = surfaceWorld(shot.view, shot.depth, high);
     if (!lowWorld || !highWorld) return ShortText("{:.1f} px", pixels);
     return ShortText("{:.1f} px   {:.3g} m", pixels, glm::distance(*lowWorld, *highWorld));
 }
@@ -63,7 +64,8 @@ void drawRuler(const RulerLine& line, const ScreenView& screen, RulerGrip lit) {
     const auto [from, to] = onScreen(line, screen);
     ImDrawList& list = *ImGui::GetWindowDrawList();
     const float em = ImGui::GetFontSize(), width = 0.13f * em;
-    const ImU32 ink = ImGui::GetColorU32(colour::accent), bright = IM_COL32(255, 255, 255, 255), dark = IM_COL32(0, 0, 0, 150);
+    const ImU32 ink = ImGui::GetColorU32(colour::accent), bright = IM_COL32(255, 255, 255, 255),
+                dark = IM_COL32(0, 0, 0, 150);
     list.AddLine(vec(from), vec(to), dark, 2.4f * width);
     list.AddLine(vec(from), vec(to), lit == RulerGrip::Both ? bright : ink, width);
     for (const auto& [end, grip] : {std::pair(from, RulerGrip::From), std::pair(to, RulerGrip::To)}) {
@@ -72,28 +74,30 @@ void drawRuler(const RulerLine& line, const ScreenView& screen, RulerGrip lit) {
     }
 }
 
-float RulerPlot::height(const Yardstick& yardstick) {
+float RulerPlot::height(const Yardstick& yardstick, bool low) {
     const float line = ImGui::GetTextLineHeightWithSpacing();
-    return plotHeight * ImGui::GetFontSize() + (1 + static_cast<float>(lines(yardstick))) * line;
+    return (low ? lowPlotHeight : plotHeight) * ImGui::GetFontSize() +
+           (1 + static_cast<float>(lines(yardstick))) * line;
 }
 
-void RulerPlot::draw(const RulerLine& line, const Yardstick& yardstick) {
+void RulerPlot::draw(const RulerLine& line, const Yardstick& yardstick, bool low) {
     const Snapshot* shot = yardstick.snapshot();
     const Truth* truth = yardstick.truth();
     const float em = ImGui::GetFontSize();
     text(colour::muted, "Penumbra, from ψ = 0.1 to 0.9");
     const ImVec2 corner = ImGui::GetCursorScreenPos();
-    const ImVec2 size{ImGui::GetContentRegionAvail().x, plotHeight * em};
+    const ImVec2 size{ImGui::GetContentRegionAvail().x, (low ? lowPlotHeight : plotHeight) * em};
     ImGui::Dummy(size);
-    tooltip("ψ along the ruler, from its left end to its right one: 1 where the whole light is hidden. The width is the "
-            "distance between the places where ψ is 0.1 and 0.9");
+    tooltip(
+        "ψ along the ruler, from its left end to its right one: 1 where the whole light is hidden. The width is the "
+        "distance between the places where ψ is 0.1 and 0.9");
     ImDrawList& list = *ImGui::GetWindowDrawList();
     const float axis = 2.4f * em; // left of the plot
-    const ImVec2 low{corner.x + axis, corner.y + size.y - 0.5f * em}, high{corner.x + size.x, corner.y + 0.5f * em};
-    const auto y = [&](float value) { return low.y + (high.y - low.y) * value; };
+    const ImVec2 start{corner.x + axis, corner.y + size.y - 0.5f * em}, high{corner.x + size.x, corner.y + 0.5f * em};
+    const auto y = [&](float value) { return start.y + (high.y - start.y) * value; };
     const ImU32 faint = ImGui::GetColorU32(ImGuiCol_Separator), muted = ImGui::GetColorU32(colour::muted);
     for (const float level : {0.0f, 0.1f, 0.9f, 1.0f})
-        list.AddLine({low.x, y(level)}, {high.x, y(level)}, faint, level == 0 || level == 1 ? 1.0f : 0.08f * em);
+        list.AddLine({start.x, y(level)}, {high.x, y(level)}, faint, level == 0 || level == 1 ? 1.0f : 0.08f * em);
     for (const float level : {0.1f, 0.9f}) {
         const ShortText mark("{:.1f}", level);
         list.AddText({corner.x, y(level) - em / 2}, muted, mark.begin(), mark.end());
@@ -115,7 +119,7 @@ void RulerPlot::draw(const RulerLine& line, const Yardstick& yardstick) {
         const ImU32 ink = ImGui::GetColorU32(inks[i]);
         const auto point = [&](size_t k) {
             const float t = static_cast<float>(k) / static_cast<float>(count - 1);
-            return ImVec2(low.x + (high.x - low.x) * t, y(std::clamp(profiles_[i][k], -0.05f, 1.05f)));
+            return ImVec2(start.x + (high.x - start.x) * t, y(std::clamp(profiles_[i][k], -0.05f, 1.05f)));
         };
         for (size_t k = 1; k < count; ++k) list.AddLine(point(k - 1), point(k), ink, 0.12f * em);
     }

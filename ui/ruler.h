@@ -19,9 +19,9 @@ void drawRuler(const RulerLine& line, const ScreenView& screen, RulerGrip lit);
 // The plot and the widths.
 class RulerPlot {
 public:
-    // Draws into the current ImGui window, as wide as it is.
-    void draw(const RulerLine& line, const Yardstick& yardstick);
-    static float height(const Yardstick& yardstick); // that draw() needs
+    // Draws into the current ImGui window, as wide as it is. `low`: where there is little room.
+    void draw(const RulerLine& line, const Yardstick& yardstick, bool low);
+    static float height(const Yardstick& yardstick, bool low); // that draw() needs
 
 private:
     std::array<std::vector<float>, 3> profiles_; // of A, B and the truth; empty: there is none

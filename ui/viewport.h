@@ -54,8 +54,8 @@ private:
     ScreenView screen_; // the picture that the pointer is on; as the camera stood when the call began
     int pane_ = 0;      // of two pictures side by side, which one that is
     Drag drag_ = Drag::None;
-    RulerGrip rulerGrip_ = RulerGrip::None; // under the pointer, or held
-    bool onLine_ = false;                   // the pointer is on the wipe's line, or holds it
+    RulerGrip rulerGrip_ = RulerGrip::None;  // under the pointer, or held
+    bool onLine_ = false;                    // the pointer is on the wipe's line, or holds it
     bool dragsLight_ = false;                // instead of the camera
     LightHandle handle_ = LightHandle::None; // under the pointer, or held
     bool lightDrawn_ = false;

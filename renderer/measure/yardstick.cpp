@@ -11,7 +11,7 @@ namespace {
 
 using namespace std::chrono_literals;
 
-constexpr auto quiet = 200ms;    // without a change before a truth is begun
+constexpr auto quiet = 200ms;         // without a change before a truth is begun
 constexpr auto snapshotPause = 100ms; // between two shots at least
 
 // Row 0 at the top instead of below.

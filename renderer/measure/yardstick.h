@@ -26,7 +26,7 @@ public:
     ~Yardstick();
     Yardstick(const Yardstick&) = delete;
 
-    bool truthWanted = false; // trace it
+    bool truthWanted = false;     // trace it
     bool snapshotsWanted = false; // read ψ back even where there is no truth to hold it to
 
     // Once a frame, after `frames` have been rendered. `current`: the renderer's images are what the session says.

@@ -55,7 +55,7 @@ hand key u
 until_ looksOther "$without" "$plot"
 frames 4
 before=$(look "$plot" | cksum)
-drag 525 376 600 480 # an end of it
+drag 525 308 600 480 # an end of it
 until_ looksOther "$before" "$plot"
 same "$plain" "$(picture)" "dragging the ruler moved the camera"
 hand key u
