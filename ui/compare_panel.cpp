@@ -18,8 +18,9 @@ using glm::max;
 using glm::min;
 using glm::pow;
 using glm::vec3;
-#include "shaders/lib/colour_map.glsl"
 #include "shaders/lib/srgb.glsl"
+
+#include "shaders/lib/colour_map.glsl" // needs the one above
 } // namespace glsl
 #pragma GCC diagnostic pop
 
