@@ -155,7 +155,7 @@ Image show(Flow& flow, const Session& session, Image shown, std::optional<Image>
             extent.width *= 2;
             break;
         case CompareAs::Flip:
-        case CompareAs::Error: constants.halves.x = width; break;
+        case CompareAs::Error: ensure(false, "one image at a time was to be shown"); break;
         }
         pass.reads = {{"shown", shown}, {"other", *other}};
     } else if (session.comparing() && comparison.as == CompareAs::Error) {
@@ -181,11 +181,9 @@ Frame buildFrame(Flow& flow, const Session& session, const SceneState& state, co
     const View view = sessionView(session, state.bounds());
     pose(flow, state, geometry);
     const Surfaces surfaces = drawSurfaces(flow, view, state, geometry, lastClipFromWorld);
-    const Inputs inputs{view,          session.light,       surfaces.buffer,
-                        geometry,      state.poseVersion(), state.occluders(),
-                        session.frame, session.seed,        session.progressive};
-    // Two techniques are instances a and b of one frame; what they need alike, such as the geometry buffer, is made
-    // once.
+    const Inputs inputs{view,          session.light, surfaces.buffer, geometry, state.poseVersion(), state.occluders(),
+                        session.frame, session.seed, session.progressive};
+    // Two techniques are instances a and b of one frame; what both need alike is made once.
     const Comparison& comparison = session.comparison;
     const bool two = comparison.against == Against::Technique, lit = session.display.show == Show::Lit;
     const auto build = [&](const TechniqueShelf& shelf, std::string_view instance) {
@@ -207,8 +205,10 @@ Frame buildFrame(Flow& flow, const Session& session, const SceneState& state, co
         if (!other) return show(flow, session, seen(shadow, own));
         if (comparison.as == CompareAs::Error)
             return show(flow, session, subtract(flow, surfaces, shadow, *other, !two));
-        return show(flow, session, seen(shadow, own),
-                    seen(*other, two ? Scope{.instance = "b", .owner = {}} : truthScope));
+        const Scope others = two ? Scope{.instance = "b", .owner = {}} : truthScope;
+        if (comparison.as == CompareAs::Flip)
+            return show(flow, session, comparison.exchanged ? seen(*other, others) : seen(shadow, own));
+        return show(flow, session, seen(shadow, own), seen(*other, others));
     };
     return {shadow, rival, display(), surfaces.buffer.depth};
 }

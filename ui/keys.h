@@ -17,24 +17,27 @@ struct Keys {
     bool light = false; // L
     bool shift = false, control = false;
     // Whether they were struck in this frame.
-    bool help = false;                                                     // H, F1
-    bool frameScene = false;                                               // F
-    bool reset = false;                                                    // Home
-    bool next = false;                                                     // C
-    bool handles = false;                                                  // G
-    bool restart = false;                                                  // R
-    bool show = false;                                                     // V
-    bool play = false;                                                     // space
-    bool buffers = false;                                                  // B
-    bool timings = false;                                                  // T
-    bool truth = false;                                                    // Y
-    bool ruler = false;                                                    // U
-    bool exchange = false;                                                 // X
-    bool alone = false;                                                    // 0
-    bool wipe = false, flip = false, sideBySide = false, errorMap = false; // 1 2 3 4
-    bool open = false;                                                     // Ctrl+O
-    bool picture = false;                                                  // F12: of the view
-    bool windowPicture = false;                                            // Shift+F12: of the whole window
+    bool help = false;          // H, F1
+    bool frameScene = false;    // F
+    bool reset = false;         // Home
+    bool next = false;          // C
+    bool handles = false;       // G
+    bool restart = false;       // R
+    bool show = false;          // V
+    bool play = false;          // space
+    bool buffers = false;       // B
+    bool timings = false;       // T
+    bool truth = false;         // Y
+    bool ruler = false;         // U
+    bool exchange = false;      // X
+    bool alone = false;         // 0
+    bool wipe = false;          // 1
+    bool flip = false;          // 2
+    bool sideBySide = false;    // 3
+    bool errorMap = false;      // 4
+    bool open = false;          // Ctrl+O
+    bool picture = false;       // F12: of the view
+    bool windowPicture = false; // Shift+F12: of the whole window
     bool escape = false;
     bool doubleClick = false; // of the left button
 };
