@@ -5,7 +5,7 @@
 source "$(dirname "${BASH_SOURCE[0]}")/person.sh"
 
 # Places in a window of 1280x720; the view is 875x689 pixels, 32 below the top.
-compare="355 16" technique_b="521 133" copy="1085 255" edge="1100 700"
+compare="355 16" technique_b="521 133" scene="1000 52" copy="1085 110"
 rmse="800 548 60 18" plot="650 340 210 115" cancel="826 690" cancel_text="800 680 54 20"
 
 press() { xdotool mousemove $1 $2 sleep 0.1 mousedown 1 sleep 0.1 mouseup 1; frames 4; }
@@ -67,6 +67,7 @@ hand key Escape
 last=$plain
 changes true   # the error map that was chosen last
 changes hand key 1 # hard shadows to the right
+press $scene # folds it, so that what is below stands still
 press $copy
 same "$plain" "$(picture)" "a technique differs from its copy"
 hand key 3
