@@ -91,7 +91,8 @@ constexpr ValueOption commonOptions[] = {
     {"--technique", "ID", "shadow technique; 'penumbra list' names them", &Options::technique},
     {"--like", "PICTURE", "everything as in a .png or .exr of ours; other options override it", &Options::like},
     {"--preset", "NAME|FILE", "technique and parameters from a preset", &Options::preset},
-    {"--view", "NAME", "a camera and a light of assets/views.json; other options override it", &Options::view},
+    {"--view", "NAME", "a camera and a light of assets/views.json, for a budget several: NAME,NAME; other options override it",
+     &Options::view},
     {"--size", "WxH", "size of the picture in pixels", &Options::size},
     {"--seed", "N", "start of the random sequences", &Options::seed},
     {"--camera", "X,Y,Z,TX,TY,TZ[,FOV]", "eye and target in metres, vertical field of view in degrees",
@@ -125,6 +126,11 @@ constexpr ValueOption measureOptions[] = {
     {"--against", "ray|samples", "the truth: traced rays, or shadow maps from many points of the light",
      &Options::against},
     {"--shard", "I/N", "only the I-th of N parts of the combinations, for N machines", &Options::shard},
+    {"--budget-ms", "X", "search the free parameters for the least error at a cost of at most X ms", &Options::budgetMs},
+    {"--budget-rmse", "Y", "search the free parameters for the least cost at an error of at most Y",
+     &Options::budgetRmse},
+    {"--free", "NAME[=FROM:TO],...", "parameters that a search for a budget may turn, NAME as with --set",
+     &Options::free},
 };
 
 struct ListOption {

@@ -26,6 +26,7 @@ struct Options {
     std::optional<int> frames;
     std::optional<int> layer, level;                             // of the buffer
     std::optional<std::string> techniques, path, against, shard; // measure
+    std::optional<std::string> budgetMs, budgetRmse, free;
     std::vector<std::string> sweeps, merged;
     std::optional<int> repeat, samples;
     bool csv = false;

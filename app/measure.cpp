@@ -9,6 +9,7 @@
 #include "app/progress_line.h"
 #include "app/truth_cache.h"
 #include "renderer/core/hash.h"
+#include "renderer/measure/budget.h"
 #include "renderer/measure/measurement.h"
 
 #include <fmt/format.h>
@@ -272,10 +273,133 @@ void chooseTruth(MeasurementPlan& plan, const Options& options, TruthCache& cach
     plan.biasMaps = defaultMaps;
 }
 
+// What all measurements tell first.
+Json heading(const Renderer& renderer, const Options& options, const Session& session, const MeasurementPlan& plan) {
+    const std::vector<std::string> doubts = doubtsAboutTimes(renderer, false);
+    for (const std::string& doubt : doubts) fmt::print(stderr, "note: {}\n", doubt);
+    return {{"program", "penumbra"},
+            {"version", PENUMBRA_VERSION},
+            {"driver", renderer.driver()},
+            {"scene", session.scene->name},
+            {"size", {session.size.x, session.size.y}},
+            {"view", viewJson(options, session, plan)},
+            {"frames", plan.frames},
+            {"repeat", plan.repeats},
+            {"notes", doubts}};
+}
+
+void addResults(Json& document, const Options& options, const Measurement& measurement) {
+    const Json truth = {{"against", options.against.value_or("ray")},
+                        {"samples", measurement.truthSamples},
+                        {"standard_error", measurement.truthStandardError},
+                        {"map_bias", measurement.mapBias ? Json(*measurement.mapBias) : Json()}};
+    document["complete"] = measurement.complete;
+    document["results"] = Json::array();
+    for (const SettingResult& result : measurement.results) document["results"].push_back(resultJson(result, truth));
+}
+
+int finish(const HeadlessContext& context, const Measurement& measurement, size_t rows) {
+    for (const std::string& message : context.messages()) fmt::print(stderr, "note: OpenGL: {}\n", message);
+    if (measurement.complete) return 0;
+    fmt::print(stderr, "penumbra: interrupted; {} of {} rows are kept\n", measurement.results.size(), rows);
+    return 1;
+}
+
+// --- a budget ------------------------------------------------------------------------------------------------------
+
+// What the options ask to be searched for, if they do.
+std::optional<Budget> budgetOf(const Options& options) {
+    const char* name = options.budgetMs ? "--budget-ms" : "--budget-rmse";
+    if (!options.budgetMs && !options.budgetRmse) {
+        if (options.free) throw InputError("--free: --budget-ms or --budget-rmse was expected with it");
+        return std::nullopt;
+    }
+    if (options.budgetMs && options.budgetRmse)
+        throw InputError("--budget-ms and --budget-rmse: one of them was expected");
+    if (!options.free) throw InputError(fmt::format("{}: --free NAME,... was expected with it", name));
+    const std::pair<const char*, bool> strangers[] = {
+        {"--sweep", !options.sweeps.empty()}, {"--path", options.path.has_value()},
+        {"--shard", options.shard.has_value()}, {"--merge", !options.merged.empty()},
+        {"--frames", options.frames.has_value()}, {"--repeat", options.repeat.has_value()}, {"--play", options.play}};
+    for (const auto& [stranger, given] : strangers)
+        if (given) throw InputError(fmt::format("{} and {}: one of them was expected", name, stranger));
+    const std::string& text = options.budgetMs ? *options.budgetMs : *options.budgetRmse;
+    Budget budget{options.budgetMs ? Bound::Cost : Bound::Error, 0};
+    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), budget.limit);
+    if (error != std::errc() || end != text.data() + text.size() || !(budget.limit > 0 && budget.limit < 1e9))
+        throw InputError(fmt::format("{}: '{}' is not a number above 0", name, text));
+    return budget;
+}
+
+int searchBudget(const Options& options, const Budget& budget) {
+    const std::vector<Setting> starts = combinations(options);
+    const std::vector<FreeParameter> free = parseFree(*options.free);
+    const size_t expected = checkFree(starts, free);
+    Options others = options;
+    others.technique = others.preset = std::nullopt;
+    others.assignments.clear();
+    std::vector<std::optional<std::string>> names{options.view};
+    if (options.view) {
+        const std::vector<std::string> list = commaList(*options.view);
+        names.assign(list.begin(), list.end());
+    }
+    std::vector<Session> sessions;
+    for (const auto& name : names) {
+        others.view = name;
+        Shot shot;
+        sessions.push_back(makeSession(others, shot));
+    }
+    MeasurementPlan plan;
+    TruthFiles cache;
+    chooseTruth(plan, options, cache);
+    plan.biasMaps = 0;
+
+    const HeadlessContext context;
+    Json document, views = Json::array();
+    {
+        const Renderer renderer;
+        others.view = names[0];
+        document = heading(renderer, others, sessions[0], plan);
+        for (size_t i = 0; i < names.size(); ++i) {
+            others.view = names[i];
+            views.push_back(viewJson(others, sessions[i], plan));
+        }
+    }
+    Measurement measurement;
+    BudgetSearch search;
+    {
+        ProgressLine line;
+        std::vector<Measurer> measurers;
+        for (Session& session : sessions) measurers.emplace_back(std::move(session), plan, line.progress());
+        const Evaluate evaluate = measuredIn(measurers, expected, [&](SettingResult result) {
+            const size_t place = result.setting.place;
+            if (place >= measurement.results.size()) return measurement.results.push_back(std::move(result));
+            measurement.results[place] = std::move(result);
+        });
+        search = penumbra::searchBudget(starts, free, budget, evaluate);
+        for (const Measurer& measurer : measurers) measurer.tellTruth(measurement);
+    }
+    measurement.complete = search.complete;
+    addResults(document, options, measurement);
+    for (size_t i = 0; i < measurement.results.size(); ++i) document["results"][i]["proposal"] = search.proposal == i;
+    document["frames"] = nullptr; // "timed_frames" of each
+    document["budget"] = {{"bound", budget.bound == Bound::Cost ? "cost" : "rmse"},
+                          {"limit", budget.limit},
+                          {"free", *options.free},
+                          {"views", views},
+                          {"tried", search.trials.size()},
+                          {"proposal", search.proposal ? Json(*search.proposal) : Json()},
+                          {"certain", search.proposal ? Json(search.certain) : Json()}};
+    markFront(document);
+    print(options, document);
+    return finish(context, measurement, expected);
+}
+
 } // namespace
 
 int measure(const Options& options) {
     if (options.json && options.csv) throw InputError("--json and --csv: one of them was expected");
+    if (const std::optional<Budget> budget = budgetOf(options)) return searchBudget(options, *budget);
     if (!options.merged.empty()) {
         print(options, mergeMeasurements(options.merged));
         return 0;
@@ -293,41 +417,17 @@ int measure(const Options& options) {
     chooseTruth(plan, options, cache);
 
     const HeadlessContext context;
-    Json document;
-    std::vector<std::string> doubts;
-    {
-        const Renderer renderer;
-        doubts = doubtsAboutTimes(renderer, false);
-        for (const std::string& doubt : doubts) fmt::print(stderr, "note: {}\n", doubt);
-        document = {{"program", "penumbra"},
-                    {"version", PENUMBRA_VERSION},
-                    {"driver", renderer.driver()},
-                    {"scene", session.scene->name},
-                    {"size", {session.size.x, session.size.y}},
-                    {"view", viewJson(options, session, plan)},
-                    {"frames", plan.frames},
-                    {"repeat", plan.repeats},
-                    {"notes", doubts}};
-    }
+    Json document = heading(Renderer(), options, session, plan);
     Measurement measurement;
     {
         ProgressLine line;
         measurement = penumbra::measure(std::move(session), std::move(settings), plan, line.progress());
     }
-    document["complete"] = measurement.complete;
-    const Json truth = {{"against", options.against.value_or("ray")},
-                        {"samples", measurement.truthSamples},
-                        {"standard_error", measurement.truthStandardError},
-                        {"map_bias", measurement.mapBias ? Json(*measurement.mapBias) : Json()}};
-    document["results"] = Json::array();
-    for (const SettingResult& result : measurement.results) document["results"].push_back(resultJson(result, truth));
+    addResults(document, options, measurement);
     addRatios(measurement, document["results"]);
     markFront(document);
     print(options, document);
-    for (const std::string& message : context.messages()) fmt::print(stderr, "note: OpenGL: {}\n", message);
-    if (measurement.complete) return 0;
-    fmt::print(stderr, "penumbra: interrupted; {} of {} rows are kept\n", measurement.results.size(), rows);
-    return 1;
+    return finish(context, measurement, rows);
 }
 
 } // namespace penumbra

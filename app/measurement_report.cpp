@@ -98,8 +98,13 @@ std::string aligned(const std::vector<std::vector<std::string>>& rows, size_t le
 
 std::string heading(const Json& document) {
     const Json& results = document["results"];
-    std::string text = fmt::format("{} {}x{}, {} frames", plain(document["scene"]), plain(at(document, "/size/0")),
-                                   plain(at(document, "/size/1")), plain(at(document, "/frames")));
+    std::string text = fmt::format("{} {}x{}", plain(document["scene"]), plain(at(document, "/size/0")),
+                                   plain(at(document, "/size/1")));
+    if (const Json& budget = at(document, "/budget"); budget.is_object())
+        text += fmt::format(", {} settings tried in {} view{}", plain(at(budget, "/tried")), at(budget, "/views").size(),
+                            at(budget, "/views").size() == 1 ? "" : "s");
+    else
+        text += fmt::format(", {} frames", plain(at(document, "/frames")));
     if (const Json& repeat = at(document, "/repeat"); repeat != 1) text += fmt::format(", {} times", plain(repeat));
     if (const Json& path = at(document, "/view/path"); path.is_string()) text += fmt::format(", along {}", plain(path));
     const auto known =
@@ -189,6 +194,36 @@ void markFront(Json& document) {
     for (size_t i = 0; i < front.size(); ++i) document["results"][i]["front"] = static_cast<bool>(front[i]);
 }
 
+namespace {
+
+// What a search came to, as a setting and the options that choose it.
+std::string proposalText(const Json& document) {
+    const Json& budget = at(document, "/budget");
+    if (!budget.is_object()) return {};
+    const bool cost = budget["bound"] == "cost";
+    const std::string wanted =
+        cost ? fmt::format("a cost of at most {:g} ms", numberAt(budget, "/limit"))
+             : fmt::format("an RMSE of at most {:g}", numberAt(budget, "/limit"));
+    if (!budget["proposal"].is_number_unsigned()) {
+        const char* path = cost ? "/cost/median" : "/error/rmse";
+        double least = std::numeric_limits<double>::infinity();
+        for (const Json& result : document["results"])
+            if (const double value = numberAt(result, path); value < least) least = value;
+        return fmt::format("Nothing that was tried keeps {}; the least was {:.4g}{}.\n", wanted, least,
+                           cost ? " ms" : "");
+    }
+    const Json& result = document["results"][budget["proposal"].get<size_t>()];
+    std::string text = fmt::format("Proposal for {}: {}, cost {:.2f} ms ({:.2f} to {:.2f}), RMSE {:.4f}{}\n ", wanted,
+                                   rowText(result), numberAt(result, "/cost/median"), numberAt(result, "/cost/low"),
+                                   numberAt(result, "/cost/high"), numberAt(result, "/error/rmse"),
+                                   budget["certain"] == false ? "; the noise of its cost reaches above that" : "");
+    text += fmt::format(" --technique {}", plain(result["technique"]));
+    for (const auto& [name, value] : result["parameters"].items()) text += fmt::format(" --set {}={}", name, plain(value));
+    return text + "\n";
+}
+
+} // namespace
+
 std::string measurementTable(const Json& document) {
     std::vector<std::vector<std::string>> rows{{"", "technique", "parameters"}};
     for (const Column& column : columns) rows[0].push_back(column.title);
@@ -202,7 +237,7 @@ std::string measurementTable(const Json& document) {
     return heading(document) + "\n" + aligned(rows, 3) + "\n" +
            "* on the trade-off front: nobody is both faster (cost = map + prefilter + resolve) and closer (RMSE).\n" +
            "Times are medians in milliseconds; bias is positive where shadows are too dark.\n" +
-           ties(document["results"]) + troubles;
+           ties(document["results"]) + troubles + proposalText(document);
 }
 
 std::string measurementCsv(const Json& document) {
@@ -219,7 +254,7 @@ std::string measurementCsv(const Json& document) {
             continue;
         }
         rows.push_back(head);
-        for (const char* key : {"ms", "cost", "stages", "bytes", "maps", "error", "front", "trouble"})
+        for (const char* key : {"ms", "cost", "stages", "bytes", "maps", "error", "front", "proposal", "trouble"})
             if (result.contains(key)) flatten(result[key], key, rows.back());
     }
     // Parameters of any row are columns of all.

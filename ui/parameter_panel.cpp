@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "ui/parameter_panel.h"
 
-#include "ui/slider_scale.h"
+#include "renderer/core/slider_scale.h"
 
 #include <algorithm>
 

@@ -20,31 +20,6 @@ Name parseName(std::string_view text) {
     return dot == std::string_view::npos ? Name{{}, text} : Name{text.substr(0, dot), text.substr(dot + 1)};
 }
 
-// Refuses a name that no setting has, with the nearest one.
-void requireKnown(const std::vector<Setting>& settings, std::string_view text) {
-    const Name name = parseName(text);
-    if (!name.technique.empty()) {
-        const auto technique = makeTechnique(findCard(name.technique));
-        technique->parameters().at(name.parameter);
-        return;
-    }
-    std::vector<std::string_view> known, techniques;
-    for (const Setting& setting : settings) {
-        for (const Parameter* parameter : setting.parameters().all()) known.push_back(parameter->spec().id);
-        if (techniques.empty() || techniques.back() != setting.card->id) techniques.push_back(setting.card->id);
-    }
-    if (std::find(known.begin(), known.end(), name.parameter) == known.end())
-        throw InputError(fmt::format("{} {} no parameter '{}'{}", fmt::join(techniques, ", "),
-                                     techniques.size() == 1 ? "has" : "have", name.parameter,
-                                     suggestion(name.parameter, known)));
-}
-
-Parameter* find(const Setting& setting, std::string_view text) {
-    const Name name = parseName(text);
-    return name.technique.empty() || name.technique == setting.card->id ? setting.parameters().find(name.parameter)
-                                                                        : nullptr;
-}
-
 double number(std::string_view text, std::string_view whole) {
     double value = 0;
     const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
@@ -113,14 +88,38 @@ std::string Setting::text() const {
     return text;
 }
 
+Parameter* findParameter(const Setting& setting, std::string_view text) {
+    const Name name = parseName(text);
+    return name.technique.empty() || name.technique == setting.card->id ? setting.parameters().find(name.parameter)
+                                                                        : nullptr;
+}
+
+void requireParameter(std::span<const Setting> settings, std::string_view text) {
+    const Name name = parseName(text);
+    if (!name.technique.empty()) {
+        const auto technique = makeTechnique(findCard(name.technique));
+        technique->parameters().at(name.parameter);
+        return;
+    }
+    std::vector<std::string_view> known, techniques;
+    for (const Setting& setting : settings) {
+        for (const Parameter* parameter : setting.parameters().all()) known.push_back(parameter->spec().id);
+        if (techniques.empty() || techniques.back() != setting.card->id) techniques.push_back(setting.card->id);
+    }
+    if (std::find(known.begin(), known.end(), name.parameter) == known.end())
+        throw InputError(fmt::format("{} {} no parameter '{}'{}", fmt::join(techniques, ", "),
+                                     techniques.size() == 1 ? "has" : "have", name.parameter,
+                                     suggestion(name.parameter, known)));
+}
+
 void assign(std::vector<Setting>& settings, std::string_view assignment) {
     const size_t equals = assignment.find('=');
     if (equals == std::string_view::npos)
         throw InputError(fmt::format("'{}' is not NAME=VALUE, such as kernel=9", assignment));
     const std::string_view name = assignment.substr(0, equals);
-    requireKnown(settings, name);
+    requireParameter(settings, name);
     for (Setting& setting : settings)
-        if (Parameter* parameter = find(setting, name)) setting.set(*parameter, assignment.substr(equals + 1));
+        if (Parameter* parameter = findParameter(setting, name)) setting.set(*parameter, assignment.substr(equals + 1));
 }
 
 SweepAxis parseSweep(std::string_view text) {
@@ -152,11 +151,11 @@ SweepAxis parseSweep(std::string_view text) {
 
 std::vector<Setting> combine(std::vector<Setting> settings, const std::vector<SweepAxis>& axes) {
     for (const SweepAxis& axis : axes) {
-        requireKnown(settings, axis.name);
+        requireParameter(settings, axis.name);
         std::vector<Setting> more;
         bool used = false;
         for (Setting& setting : settings) {
-            Parameter* parameter = find(setting, axis.name);
+            Parameter* parameter = findParameter(setting, axis.name);
             if (!parameter) {
                 more.push_back(std::move(setting));
                 continue;

@@ -5,6 +5,7 @@
 #include "renderer/core/technique.h"
 
 #include <memory>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -27,6 +28,11 @@ struct Setting {
     // "kernel 9, shape box"
     std::string text() const;
 };
+
+// A parameter by name, "pcf.kernel" or "kernel"; null if the setting has none.
+Parameter* findParameter(const Setting& setting, std::string_view name);
+// Refuses one that no setting has, with the nearest one. Throws InputError.
+void requireParameter(std::span<const Setting> settings, std::string_view name);
 
 // "pcf.kernel=9", or "kernel=9" for every technique of the list that has a kernel. Throws InputError, also if none has.
 void assign(std::vector<Setting>& settings, std::string_view assignment);

@@ -53,17 +53,24 @@ std::vector<float> sampledShadow(const Renderer& renderer, Session& session, int
     return other->read(other->shadow()).values;
 }
 
-class Run {
+} // namespace
+
+class Measurer::Work {
 public:
-    Run(Session session, const MeasurementPlan& plan, Progress& progress)
+    Work(Session session, MeasurementPlan plan, Progress& progress)
         : session_(std::move(session))
-        , plan_(plan)
+        , plan_(std::move(plan))
         , progress_(progress)
         , start_(session_.time)
         , camera_(session_.camera) {}
 
-    Measurement measure(std::vector<Setting> settings) {
+    Measurement measure(std::vector<Setting> settings, int frames, Share share) {
+        plan_.frames = frames;
+        share_ = share;
+        drawn_ = 0;
         draws_ = static_cast<double>(settings.size()) * (warmUpFrames + double(plan_.frames) * plan_.repeats);
+        measurement_.results.clear();
+        measurement_.complete = true;
         try {
             for (Setting& setting : settings) {
                 Lane lane = prepare(std::move(setting));
@@ -76,11 +83,17 @@ public:
             measurement_.complete = false;
             collect();
         }
-        return std::move(measurement_);
+        return {std::move(measurement_.results), measurement_.complete, measurement_.truthSamples,
+                measurement_.truthStandardError, measurement_.mapBias};
+    }
+
+    void tellTruth(Measurement& measurement) const {
+        measurement.truthSamples = std::max(measurement.truthSamples, measurement_.truthSamples);
+        measurement.truthStandardError = std::max(measurement_.truthStandardError, measurement.truthStandardError);
     }
 
 private:
-    void tell(const char* doing) { progress_.report(doing, drawn_ / draws_); }
+    void tell(const char* doing) { progress_.report(doing, std::lerp(share_.from, share_.to, drawn_ / draws_)); }
 
     uint64_t bytesHeld() const {
         uint64_t sum = 0;
@@ -152,7 +165,7 @@ private:
         }
         if (repeat > 0) return;
         // A still view has one truth, which is known before the first errors are asked for.
-        if (plan_.moves || !measurement_.truth) trace();
+        if (plan_.moves || !truth_) trace();
         const int firstChange = std::max(plan_.frames / 2, 1);
         if (!plan_.moves && frame < firstChange - 1 && frame < plan_.frames - 1) return;
         for (Lane& lane : lanes_) {
@@ -160,11 +173,11 @@ private:
             readShadow(lane);
             if (plan_.moves) {
                 FrameResult& result = lane.result.frames[static_cast<size_t>(frame)];
-                result.errors = errorsOf(lane.shadow, *measurement_.truth);
-                result.standardError = measurement_.truth->meanPenumbraStandardError;
+                result.errors = errorsOf(lane.shadow, *truth_);
+                result.standardError = truth_->meanPenumbraStandardError;
             }
             if (frame >= firstChange && !plan_.path && !lane.shadowBefore.empty()) {
-                const Truth& truth = *measurement_.truth;
+                const Truth& truth = *truth_;
                 const Truth& before = truthBefore_ ? *truthBefore_ : truth;
                 lane.flickers.push_back(flicker({lane.shadowBefore, &before}, {lane.shadow, &truth}));
             }
@@ -220,14 +233,13 @@ private:
     void trace() {
         const auto drawn = std::find_if(lanes_.begin(), lanes_.end(), draws);
         if (drawn == lanes_.end()) return;
-        std::optional<Truth>& truth = measurement_.truth;
-        if (plan_.moves) truthBefore_ = std::exchange(truth, std::nullopt);
-        truth = plan_.truth(*drawn->renderer, session_, progress_);
-        measurement_.truthSamples = std::max(measurement_.truthSamples, truth->samplesMost);
-        measurement_.truthStandardError = std::max(truth->meanPenumbraStandardError, measurement_.truthStandardError);
+        if (plan_.moves) truthBefore_ = std::exchange(truth_, std::nullopt);
+        truth_ = plan_.truth(*drawn->renderer, session_, progress_);
+        measurement_.truthSamples = std::max(measurement_.truthSamples, truth_->samplesMost);
+        measurement_.truthStandardError = std::max(truth_->meanPenumbraStandardError, measurement_.truthStandardError);
         if (!plan_.moves && plan_.biasMaps > 0)
             measurement_.mapBias =
-                errorsOf(sampledShadow(*drawn->renderer, session_, plan_.biasMaps, progress_), *truth).all.rmse;
+                errorsOf(sampledShadow(*drawn->renderer, session_, plan_.biasMaps, progress_), *truth_).all.rmse;
     }
 
     // Ends the lanes that there are: their figures, as far as they got.
@@ -254,9 +266,9 @@ private:
             std::erase_if(result.frames, [](const FrameResult& frame) { return !frame.errors; });
             for (const FrameResult& frame : result.frames) errors.push_back(*frame.errors);
             if (!errors.empty()) result.errors = together(errors);
-        } else if (measurement_.truth) {
+        } else if (truth_) {
             const std::vector<float> shadow = lane.renderer->read(lane.renderer->shadow()).values;
-            result.errors = errorsOf(shadow, *measurement_.truth);
+            result.errors = errorsOf(shadow, *truth_);
         }
         if (!lane.flickers.empty()) {
             double sum = 0;
@@ -287,18 +299,17 @@ private:
     }
 
     Session session_;
-    const MeasurementPlan& plan_;
+    MeasurementPlan plan_;
     Progress& progress_;
     const double start_;
     const Camera camera_;
     Measurement measurement_;
     std::unique_ptr<Renderer> first_; // one that others are siblings of, when its lane is done
     std::vector<Lane> lanes_;
-    std::optional<Truth> truthBefore_; // of the frame before
-    double drawn_ = 0, draws_ = 1;     // frames so far, in all
+    std::optional<Truth> truth_, truthBefore_; // of the frame, or of the still view; of the frame before
+    double drawn_ = 0, draws_ = 1;             // frames so far, in all
+    Share share_;
 };
-
-} // namespace
 
 TruthOfView tracedTruth(const TruthSettings& settings) {
     return [settings](const Renderer& renderer, Session& session, Progress& progress) {
@@ -321,8 +332,25 @@ TruthOfView sampledTruth(int maps) {
 }
 
 Measurement measure(Session session, std::vector<Setting> settings, const MeasurementPlan& plan, Progress& progress) {
-    return Run(std::move(session), plan, progress).measure(std::move(settings));
+    return Measurer(std::move(session), plan, progress).measure(std::move(settings));
 }
+
+Measurer::Measurer(Session session, MeasurementPlan plan, Progress& progress)
+    : work_(std::make_unique<Work>(std::move(session), plan, progress))
+    , frames_(plan.frames) {}
+
+Measurer::~Measurer() = default;
+Measurer::Measurer(Measurer&&) noexcept = default;
+
+Measurement Measurer::measure(std::vector<Setting> settings) {
+    return measure(std::move(settings), frames_, {});
+}
+
+Measurement Measurer::measure(std::vector<Setting> settings, int frames, Share share) {
+    return work_->measure(std::move(settings), frames, share);
+}
+
+void Measurer::tellTruth(Measurement& measurement) const { work_->tellTruth(measurement); }
 
 Errors together(std::span<const Errors> errors) {
     Errors sum;

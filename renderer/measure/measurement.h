@@ -68,12 +68,34 @@ struct Measurement {
     int truthSamples = 0;               // rays a pixel or maps, the most of any truth
     double truthStandardError = 0;      // mean over penumbra pixels, the worst of any truth
     std::optional<double> mapBias;      // RMSE of plan.biasMaps: what of an error is due to shadow maps as such
-    std::optional<Truth> truth;         // of the last view
 };
 
 // Draws in the current context. Settings that cannot be drawn (more textures than session.textureLimit) have a trouble
 // instead of figures. A cancellation through `progress` keeps what is done.
 Measurement measure(Session session, std::vector<Setting> settings, const MeasurementPlan& plan, Progress& progress);
+
+// Measures batch after batch of settings in one view: the scene, the programs and, where nothing moves, the truth are
+// kept in between. All in one context, which is current.
+class Measurer {
+public:
+    Measurer(Session session, MeasurementPlan plan, Progress& progress);
+    ~Measurer();
+    Measurer(Measurer&&) noexcept;
+
+    // What a batch is of all that `progress` tells of.
+    struct Share {
+        double from = 0, to = 1;
+    };
+    Measurement measure(std::vector<Setting> settings); // as planned
+    Measurement measure(std::vector<Setting> settings, int frames, Share share);
+    // Notes its truth in `measurement`: the most samples and the worst standard error of several.
+    void tellTruth(Measurement& measurement) const;
+
+private:
+    class Work;
+    std::unique_ptr<Work> work_;
+    int frames_;
+};
 
 // The figures of several frames as one: pixels weigh alike, percentiles are means over the frames.
 Errors together(std::span<const Errors> errors);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "ui/slider_scale.h"
+#include "renderer/core/slider_scale.h"
 
 #include <algorithm>
 #include <cmath>

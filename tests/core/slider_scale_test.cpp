@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "tests/catch.h"
 
-#include "ui/slider_scale.h"
+#include "renderer/core/slider_scale.h"
 
 using namespace penumbra;
 
