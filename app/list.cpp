@@ -2,6 +2,7 @@
 #include "app/list.h"
 
 #include "app/command_line.h"
+#include "app/measurement_report.h"
 #include "app/preset.h"
 #include "renderer/frame.h"
 
@@ -75,7 +76,7 @@ Json bufferJson(const Flow& flow, const Flow::ImageNode& image) {
             {"channels", channels}};
 }
 
-Json techniqueJson(const Card& card, const ParameterSet& parameterSet, const Flow& flow) {
+Json techniqueJson(const Technique& technique, const Card& card, const ParameterSet& parameterSet, const Flow& flow) {
     Json parameters = Json::array(), buffers = Json::array();
     for (const Parameter* parameter : parameterSet.all()) parameters.push_back(parameterJson(*parameter));
     for (const Flow::ImageNode& image : flow.images())
@@ -83,7 +84,7 @@ Json techniqueJson(const Card& card, const ParameterSet& parameterSet, const Flo
     return {{"id", card.id},           {"title", card.title}, {"authors", card.authors},
             {"year", card.year},       {"venue", card.venue}, {"idea", card.idea},
             {"assumes", card.assumes}, {"fails", card.fails}, {"parameters", parameters},
-            {"buffers", buffers}};
+            {"buffers", buffers},      {"reads", readsJson(technique)}};
 }
 
 // What a scene file offers to choose from.
@@ -123,7 +124,7 @@ Json listing(const Options& options) {
     for (const Card* card : catalogue()) {
         if (options.technique && card->id != *options.technique) continue;
         session.techniques.choose(card->id);
-        techniques.push_back(techniqueJson(*card, session.techniques.parameters(), flowOf(session)));
+        techniques.push_back(techniqueJson(session.techniques.technique(), *card, session.techniques.parameters(), flowOf(session)));
     }
     Json json = {{"version", PENUMBRA_VERSION},
                  {"techniques", techniques},
@@ -161,6 +162,8 @@ void printTechnique(const Json& technique) {
         fmt::print(" ({}, {} {})", text(technique, "authors"), text(technique, "venue"), technique["year"].get<int>());
     fmt::print("\n  Idea: {}\n  Assumes: {}\n  Fails: {}\n", text(technique, "idea"), text(technique, "assumes"),
                text(technique, "fails"));
+    if (const std::string reads = readsText(technique["reads"]); !reads.empty())
+        fmt::print("  Reads: {} texels a pixel\n", reads);
     if (!technique["parameters"].empty()) fmt::print("  Parameters\n");
     for (const Json& parameter : technique["parameters"]) printParameter(id, parameter);
     fmt::print("  Buffers\n");

@@ -183,6 +183,8 @@ Json resultJson(const SettingResult& result, const Json& truth) {
     }
     json["bytes"] = result.bytes;
     json["maps"] = result.maps;
+    json["pass_count"] = result.costPasses;
+    json["reads"] = readsJson(*result.setting.technique);
     json["error"] = errorJson(result, truth);
     json["frames"] = framesJson(result);
     json["front"] = false;

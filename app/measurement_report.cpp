@@ -2,6 +2,7 @@
 #include "app/measurement_report.h"
 
 #include "app/file_io.h"
+#include "renderer/core/csv.h"
 #include "renderer/core/error.h"
 #include "renderer/measure/statistics.h"
 
@@ -132,17 +133,6 @@ std::string ties(const Json& results) {
 
 // --- comma-separated values ----------------------------------------------------------------------------------------
 
-std::string quoted(const std::string& text) {
-    if (text.find_first_of(",\"\n\r") == std::string::npos) return text;
-    std::string result(1, '"');
-    for (const char c : text) {
-        if (c == '"') result += '"';
-        result += c;
-    }
-    result += '"';
-    return result;
-}
-
 void flatten(const Json& json, const std::string& name, Json& row) {
     if (json.is_object())
         for (const auto& [key, value] : json.items()) flatten(value, name.empty() ? key : name + "." + key, row);
@@ -186,6 +176,17 @@ constexpr const char* common[] = {"/version", "/scene", "/size", "/view/hash", "
 
 } // namespace
 
+Json readsJson(const Technique& technique) {
+    const std::optional<TextureReads> reads = technique.readsPerPixel();
+    return reads ? Json{{"least", reads->least}, {"most", reads->most}} : Json();
+}
+
+std::string readsText(const Json& reads) {
+    if (!reads.is_object()) return {};
+    const std::string least = plain(at(reads, "/least")), most = plain(at(reads, "/most"));
+    return least == most ? least : least + "-" + most;
+}
+
 void markFront(Json& document) {
     std::vector<TradeOff> points;
     for (const Json& result : document["results"])
@@ -227,16 +228,20 @@ std::string proposalText(const Json& document) {
 std::string measurementTable(const Json& document) {
     std::vector<std::vector<std::string>> rows{{"", "technique", "parameters"}};
     for (const Column& column : columns) rows[0].push_back(column.title);
+    rows[0].push_back("reads");
     std::string troubles;
     for (const Json& result : document["results"]) {
         rows.push_back({at(result, "/front") == true ? "*" : "", plain(result["technique"]), parameterText(result)});
         for (const Column& column : columns) rows.back().push_back(cell(result, column));
+        const std::string reads = readsText(at(result, "/reads"));
+        rows.back().push_back(reads.empty() ? "-" : reads);
         if (const Json& trouble = at(result, "/trouble"); trouble.is_string())
             troubles += fmt::format("{}: {}\n", rowText(result), plain(trouble));
     }
     return heading(document) + "\n" + aligned(rows, 3) + "\n" +
            "* on the trade-off front: nobody is both faster (cost = map + prefilter + resolve) and closer (RMSE).\n" +
-           "Times are medians in milliseconds; bias is positive where shadows are too dark.\n" +
+           "Times are medians in milliseconds; bias is positive where shadows are too dark; reads are texels of shadow maps a "
+           "pixel.\n" +
            ties(document["results"]) + troubles + proposalText(document);
 }
 
@@ -254,7 +259,7 @@ std::string measurementCsv(const Json& document) {
             continue;
         }
         rows.push_back(head);
-        for (const char* key : {"ms", "cost", "stages", "bytes", "maps", "error", "front", "proposal", "trouble"})
+        for (const char* key : {"ms", "cost", "stages", "bytes", "maps", "pass_count", "reads", "error", "front", "proposal", "trouble"})
             if (result.contains(key)) flatten(result[key], key, rows.back());
     }
     // Parameters of any row are columns of all.
@@ -268,7 +273,7 @@ std::string measurementCsv(const Json& document) {
         std::string line;
         for (const auto& [title, unused] : titles.items()) {
             if (!line.empty()) line += ',';
-            line += quoted(valueOf(title));
+            line += csvField(valueOf(title));
         }
         text += line;
         text += '\n';

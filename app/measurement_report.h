@@ -4,12 +4,17 @@
 #pragma once
 
 #include "app/json_text.h"
+#include "renderer/core/technique.h"
 
 #include <filesystem>
 #include <string>
 #include <vector>
 
 namespace penumbra {
+
+// {"least", "most"} of a technique's texture reads a pixel, or null; and as a text, "16-32" or nothing.
+Json readsJson(const Technique& technique);
+std::string readsText(const Json& reads);
 
 // Sets "front" of every result: whether no other one is at least as cheap and as close, and better in one of the two.
 void markFront(Json& document);

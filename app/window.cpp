@@ -151,17 +151,19 @@ private:
     glm::dvec2 lastPlace_{0};
 };
 
-// A context that shares the window's objects, for another thread to fill them.
-class LoadingContext {
+// A context for another thread; it may share a window's objects, to fill them.
+class HiddenContext {
 public:
-    explicit LoadingContext(GLFWwindow* window) {
+    explicit HiddenContext(GLFWwindow* shared) {
         glfwWindowHint(GLFW_VISIBLE, GLFW_FALSE);
-        window_ = glfwCreateWindow(1, 1, "", nullptr, window);
+        window_ = glfwCreateWindow(1, 1, "", nullptr, shared);
         if (!window_) throw InputError(fmt::format("there is no second OpenGL context ({})", lastGlfwError()));
     }
-    ~LoadingContext() { glfwDestroyWindow(window_); }
-    LoadingContext(const LoadingContext&) = delete;
-    void makeCurrent(bool current) const { glfwMakeContextCurrent(current ? window_ : nullptr); }
+    ~HiddenContext() { glfwDestroyWindow(window_); }
+    HiddenContext(const HiddenContext&) = delete;
+    SideContext::MakeCurrent makeCurrent() const {
+        return [window = window_](bool current) { glfwMakeContextCurrent(current ? window : nullptr); };
+    }
 
 private:
     GLFWwindow* window_ = nullptr;
@@ -256,6 +258,7 @@ void Window::onStroke(GLFWwindow* window, int key, int modifiers) {
     case GLFW_KEY_2: struck.flip = true; break;
     case GLFW_KEY_3: struck.sideBySide = true; break;
     case GLFW_KEY_4: struck.errorMap = true; break;
+    case GLFW_KEY_M: struck.tradeOff = true; break;
     default: break;
     }
 }
@@ -417,15 +420,16 @@ struct Pixels {
     explicit Pixels(glm::ivec2 s) : size(s), bytes(3 * static_cast<size_t>(s.x) * static_cast<size_t>(s.y)) {}
 };
 
-// What stands in the back buffer.
-Pixels windowPixels(const Window& window) {
-    Pixels pixels(window.framebufferSize());
+// A part of what stands in the back buffer, from its lower left corner.
+Pixels windowPixels(glm::ivec2 corner, glm::ivec2 size) {
+    Pixels pixels(size);
     glBindFramebuffer(GL_READ_FRAMEBUFFER, 0);
     glReadBuffer(GL_BACK);
     glPixelStorei(GL_PACK_ALIGNMENT, 1);
-    glReadPixels(0, 0, pixels.size.x, pixels.size.y, GL_RGB, GL_UNSIGNED_BYTE, pixels.bytes.data());
+    glReadPixels(corner.x, corner.y, size.x, size.y, GL_RGB, GL_UNSIGNED_BYTE, pixels.bytes.data());
     return pixels;
 }
+Pixels windowPixels(const Window& window) { return windowPixels({0, 0}, window.framebufferSize()); }
 
 Pixels viewPixels(const Renderer& renderer) {
     const Texture& display = renderer.runner().texture(renderer.flow(), renderer.display());
@@ -493,6 +497,24 @@ Actions actionsOn(Session& session, const Renderer& renderer, const Window& wind
         writeFileAtomically(file, table);
         return file;
     };
+    actions.saveChart = [&](ImVec2 corner, ImVec2 size) {
+        const float scale = window.pixelsPerUnit();
+        const glm::ivec2 whole = window.framebufferSize();
+        const glm::ivec2 from = glm::clamp(glm::ivec2(scale * glm::vec2(corner.x, corner.y)), glm::ivec2(0), whole);
+        const glm::ivec2 extent =
+            glm::clamp(glm::ivec2(scale * glm::vec2(size.x, size.y)), glm::ivec2(1), glm::max(whole - from, 1));
+        makeFolder(settings.pictures);
+        const fs::path file = names.next(settings.pictures, session, ".png", "trade-off");
+        writePicture(file, pictureOf(windowPixels({from.x, whole.y - from.y - extent.y}, extent)),
+                     factsOf(session, {.panels = true}, renderer.driver()));
+        return file;
+    };
+    actions.saveTradeOff = [&](const std::string& table) {
+        makeFolder(settings.pictures);
+        fs::path file = names.next(settings.pictures, session, "-trade-off.csv");
+        writeFileAtomically(file, table);
+        return file;
+    };
     actions.picturesFolder = [&settings] { return settings.pictures; };
     actions.setPicturesFolder = [&settings](const fs::path& folder) {
         if (!folder.is_absolute())
@@ -516,8 +538,8 @@ int runWindow(Session& session, glm::ivec2 size) {
     Window window(size);
     Renderer renderer;
     Gui gui(window);
-    const LoadingContext loadingContext(window.get());
-    SceneLoader loader([&](bool current) { loadingContext.makeCurrent(current); });
+    const HiddenContext loadingContext(window.get()), measuringContext(nullptr);
+    SceneLoader loader(loadingContext.makeCurrent());
     Settings settings = defaultSettings();
     std::string trouble;
     try {
@@ -527,7 +549,9 @@ int runWindow(Session& session, glm::ivec2 size) {
     }
     FileNames names;
     TruthFiles truthFiles;
-    Workspace workspace(session, renderer, loader, actionsOn(session, renderer, window, settings, names, truthFiles));
+    Actions actions = actionsOn(session, renderer, window, settings, names, truthFiles);
+    actions.measuringContext = measuringContext.makeCurrent();
+    Workspace workspace(session, renderer, loader, std::move(actions));
     if (!trouble.empty()) workspace.say(trouble);
     if (!gui.fit()) workspace.say("DejaVu Sans is not installed: Greek letters and signs show as '?'");
     glfwSetWindowTitle(window.get(), fmt::format("{} – Penumbra", session.scene->name).c_str());

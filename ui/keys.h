@@ -27,6 +27,7 @@ struct Keys {
     bool play = false;          // space
     bool buffers = false;       // B
     bool timings = false;       // T
+    bool tradeOff = false;      // M
     bool truth = false;         // Y
     bool ruler = false;         // U
     bool exchange = false;      // X
@@ -79,7 +80,7 @@ inline constexpr KeyHelp keyHelp[] = {
     {"V", "lit picture or shadow ψ"},
     {"R", "restart: forget all history"},
     {"Space", "play or pause the animation"},
-    {"B,  T", "buffers, timings"},
+    {"B,  T,  M", "buffers, timings, trade-off of cost and error"},
     {"Ctrl + O", "open a scene"},
     {"F12,  Shift + F12", "save a picture of the view, of the whole window"},
     {"Ctrl + plus, minus, 0", "larger or smaller text, as at first"},

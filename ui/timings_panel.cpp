@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "ui/timings_panel.h"
 
+#include "renderer/core/csv.h"
+
 #include <algorithm>
 #include <cmath>
 
@@ -117,14 +119,6 @@ void imageTable(const Flow& flow) {
             line(flow.label(image.label), extentText(image.spec.extent).view(), info(image.spec.format).name,
                  bytesOf(image));
     ImGui::EndTable();
-}
-
-// RFC 4180.
-std::string csvField(std::string_view text) {
-    if (text.find_first_of(",\"\n\r") == std::string_view::npos) return std::string(text);
-    std::string field = "\"";
-    for (const char c : text) field += c == '"' ? "\"\"" : std::string(1, c);
-    return field + '"';
 }
 
 } // namespace

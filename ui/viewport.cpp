@@ -324,7 +324,7 @@ void Viewport::render(Session& session, Renderer& renderer, Timing timing, bool 
                 frames_ < settledFrame_ && renderer.runner().timer().newest().milliseconds < dearFrame;
             // After a failure only a change can help.
             const bool living =
-                trouble_.empty() && (always || settling || session.timeStep != 0 || renderer.flow().living());
+                trouble_.empty() && !resting_ && (always || settling || session.timeStep != 0 || renderer.flow().living());
             if (!changed && !living) return;
             if (restart_) {
                 renderer.reset();

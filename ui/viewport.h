@@ -23,6 +23,8 @@ public:
     void draw(Session& session, Renderer& renderer, const SceneFacts& facts, const Keys& keys, ViewSettings& settings,
               Timing timing, bool always, float pixelsPerUnit);
 
+    // Whether to draw only what changed: somebody measures meanwhile.
+    void rest(bool resting) { resting_ = resting; }
     // The next frame is the first: no history.
     void restart() { restart_ = true; }
     // A new scene: whatever is shown next has nothing to do with what was.
@@ -66,7 +68,7 @@ private:
     std::optional<Point> point_;              // looked up as soon as the picture is what the session says
     double targetUntil_ = 0, speedUntil_ = 0; // how long they are drawn; ImGui's time [s]
 
-    bool restart_ = false;
+    bool restart_ = false, resting_ = false;
     std::vector<uint32_t> now_, drawn_; // what decides the picture, as words: of this call, of the last frame begun
     uint64_t frames_ = 0, settledFrame_ = 0;
     bool renderedNow_ = false, busy_ = false;

@@ -15,10 +15,11 @@ constexpr ImGuiWindowFlags fixedWindow = ImGuiWindowFlags_NoTitleBar | ImGuiWind
 constexpr float sideWidth = 27;
 constexpr float narrowWidth = 64;
 constexpr float lowestDrawer = 8;
-constexpr float firstTimings = 19, firstBuffers = 29;
+constexpr float firstTimings = 19, firstBuffers = 29, firstTradeOff = 27;
 constexpr double step = 1.0 / 60;     // of time, by the step button [s]
 constexpr double smooth = 1.0 / 60;   // between two frames of a bar that fills [s]
 constexpr double idle = 0.1;          // between two frames of a window with nothing new to show [s]
+constexpr double whileMeasuring = 0.25;
 constexpr float longestFrame = 0.25f; // [s]; after a pause of the program time does not jump further
 
 bool beginFixed(const char* name, ImVec2 corner, ImVec2 size, ImGuiWindowFlags flags = 0) {
@@ -64,7 +65,8 @@ Workspace::Workspace(Session& session, Renderer& renderer, SceneLoader& loader, 
     , loader_(loader)
     , actions_(std::move(actions))
     , facts_(session.scene)
-    , yardstick_(actions_.truthCache) {
+    , yardstick_(actions_.truthCache)
+    , tradeOff_(actions_.measuringContext, actions_.truthCache) {
     playback_.playing = session.timeStep != 0;
     side_.setPresetNames(actions_.presetNames());
 }
@@ -95,8 +97,9 @@ void Workspace::say(std::string message) {
 
 double Workspace::patience() const {
     if (viewport_.renderedNow() || viewport_.busy() || playback_.playing || windowPictureIn_ > 0 ||
-        drawer_ == Drawer::Timings)
+        chartPictureIn_ > 0 || drawer_ == Drawer::Timings)
         return 0;
+    if (tradeOff_.measuring()) return whileMeasuring; // what is measured shall have the machine
     return loader_.progress() || messageSeconds_ > 0 || pictureWanted_ || !saving_.empty() ? smooth : idle;
 }
 
@@ -106,6 +109,8 @@ Timing Workspace::timing() const {
 
 void Workspace::draw(const Keys& keys, float seconds, float pixelsPerUnit) {
     takeLoaded();
+    if (std::string line = tradeOff_.poll(); !line.empty()) say(std::move(line));
+    viewport_.rest(tradeOff_.measuring());
     strokes(keys);
     sinceAdvance_ += seconds;
     if (!viewport_.busy()) { // a picture that is under way is of the time when it began
@@ -122,7 +127,9 @@ void Workspace::draw(const Keys& keys, float seconds, float pixelsPerUnit) {
     const bool narrow = screen.x < narrowWidth * em;
     float drawerHeight = 0;
     if (drawer_ != Drawer::Closed) {
-        const float first = drawer_ == Drawer::Buffers ? firstBuffers : firstTimings;
+        const float first = drawer_ == Drawer::Buffers    ? firstBuffers
+                            : drawer_ == Drawer::TradeOff ? firstTradeOff
+                                                          : firstTimings;
         drawerHeight = std::min(drawerHeight_ ? *drawerHeight_ * em : std::min(first * em, 0.6f * below), highest);
     }
     const float viewHeight = below - drawerHeight, sideHeight = narrow ? viewHeight : below;
@@ -177,6 +184,7 @@ void Workspace::strokes(const Keys& keys) {
     compare_.strokes(keys, session_, yardstick_, view_);
     if (keys.buffers) toggle(Drawer::Buffers);
     if (keys.timings) toggle(Drawer::Timings);
+    if (keys.tradeOff) toggle(Drawer::TradeOff);
     if (keys.next) say(keys.light ? side_.light().next(session_, facts_) : side_.camera().next(session_, facts_));
     if (keys.open) chooser_.open(facts_.scene->file.parent_path());
 }
@@ -211,6 +219,9 @@ void Workspace::bar(ImVec2 size) {
         tooltip("What each pass costs (T)");
         ImGui::SameLine();
         compare_.button(session_, yardstick_, view_);
+        ImGui::SameLine();
+        if (toggleButton("Trade-off", drawer_ == Drawer::TradeOff)) toggle(Drawer::TradeOff);
+        tooltip("Cost and error of every technique, and the best within a budget (M)");
         ImGui::SameLine();
         if (ImGui::Button("Help")) openHelp_ = true;
         tooltip("Keys and mouse (H)");
@@ -265,9 +276,24 @@ void Workspace::drawer(float pixelsPerUnit) {
     if (drawer_ == Drawer::Buffers) {
         if (const auto shot = buffers_.draw(renderer_, viewport_.frames(), pixelsPerUnit))
             attempt([&] { say(fmt::format("Saved {}", actions_.saveBuffer(*shot).string())); });
+    } else if (drawer_ == Drawer::TradeOff) {
+        drawTradeOff();
     } else if (timings_.draw(renderer_, renderer_.softwareRenderer() && timedHow_ == Timing::Queries)) {
         exportTimings();
     }
+}
+
+void Workspace::drawTradeOff() {
+    const bool idle = !tradeOff_.measuring();
+    const TradeOffPanel::Requests requests = tradeOff_.draw(session_, chartPictureIn_ > 0);
+    if (idle && tradeOff_.measuring()) playback_.playing = false; // a still view is measured
+    if (requests.restart) viewport_.restart();
+    if (requests.savePicture) chartPictureIn_ = 3;
+    if (requests.saveTable)
+        attempt([&] {
+            const std::string table = tradeOff_.csv(session_, renderer_.driver());
+            say(fmt::format("Saved {}", actions_.saveTradeOff(table).string()));
+        });
 }
 
 void Workspace::carryOut(Requests& requests) {
@@ -352,6 +378,11 @@ void Workspace::takePicture() {
 }
 
 void Workspace::drawn() {
+    if (chartPictureIn_ > 0 && --chartPictureIn_ == 0)
+        attempt([&] {
+            const auto file = actions_.saveChart(tradeOff_.chartCorner(), tradeOff_.chartSize());
+            say(fmt::format("Saved {}", file.string()));
+        });
     if (windowPictureIn_ == 0 || (renderer_.hasFrame() && !viewport_.upToDate())) return;
     // The first frame closes menus and tooltips; no message shall lie over the view.
     messageSeconds_ = 0;

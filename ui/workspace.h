@@ -7,6 +7,7 @@
 #include "ui/file_chooser.h"
 #include "ui/side_panel.h"
 #include "ui/timings_panel.h"
+#include "ui/tradeoff_panel.h"
 #include "ui/viewport.h"
 
 #include "renderer/scene_loader.h"
@@ -30,8 +31,12 @@ struct Actions {
     std::function<std::future<std::filesystem::path>(bool wholeWindow)> savePicture;
     std::function<std::filesystem::path(const BufferShot&)> saveBuffer;
     std::function<std::filesystem::path(const std::string& csv)> saveTimings; // where it is
+    // Of a part of the back buffer, in units of the window.
+    std::function<std::filesystem::path(ImVec2 corner, ImVec2 size)> saveChart;
+    std::function<std::filesystem::path(const std::string& csv)> saveTradeOff;
     std::function<std::filesystem::path()> picturesFolder;
     std::function<void(const std::filesystem::path& folder)> setPicturesFolder; // from now on
+    SideContext::MakeCurrent measuringContext; // for a thread that measures
     TruthCache* truthCache = nullptr;                                           // of truths that are known already
 };
 
@@ -54,7 +59,7 @@ public:
     double patience() const;
 
 private:
-    enum class Drawer { Closed, Buffers, Timings };
+    enum class Drawer { Closed, Buffers, Timings, TradeOff };
 
     void strokes(const Keys& keys);
     void advanceTime(float seconds);
@@ -71,6 +76,7 @@ private:
     void noteTimes();
     std::array<double, 2> costs() const;
     void exportTimings();
+    void drawTradeOff();
     void dialogs(const Keys& keys);
     void helpDialog(bool close);
     void errorDialog(bool close);
@@ -96,6 +102,7 @@ private:
     uint64_t costsFrame_ = 0;     // of the timer, that they were taken from last
     BufferPanel buffers_;
     TimingsPanel timings_;
+    TradeOffPanel tradeOff_;
     FileChooser chooser_, folderChooser_{FileChooser::Pick::Folder};
 
     Drawer drawer_ = Drawer::Closed;
@@ -103,6 +110,7 @@ private:
     Timing timedHow_ = Timing::Off;     // how the times that the timings panel has gathered were measured
     std::vector<uint32_t> work_;        // what decides how much a frame has to do
     int windowPictureIn_ = 0;           // frames until the picture of the whole window is taken; 0: none is
+    int chartPictureIn_ = 0;            // and that of the chart
     std::vector<std::future<std::filesystem::path>> saving_; // pictures on their way
 
     SceneRequest loading_; // what the loader is at

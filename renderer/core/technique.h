@@ -7,6 +7,7 @@
 #include "renderer/core/flow.h"
 
 #include <memory>
+#include <optional>
 #include <span>
 #include <string_view>
 
@@ -16,10 +17,18 @@ struct Inputs; // view, light, geometry buffer, scene: renderer/inputs.h
 
 struct Card;
 
+// Texels that a pixel reads of shadow maps and of what is made of them; a gather reads four. Of pixels that face the
+// light, which others need not ask.
+struct TextureReads {
+    int least = 0, most = 0;
+};
+
 class Technique {
 public:
     virtual ~Technique() = default;
     virtual ParameterSet& parameters() = 0;
+    // With these parameters, in a frame that is drawn at once; nothing: it is not known.
+    virtual std::optional<TextureReads> readsPerPixel() const { return std::nullopt; }
     // Appends passes and returns ψ(x, y) in [0, 1], the fraction of the light that a pixel's surface does not see:
     // one R32F image of the view's size named "shadow". Pixels without a surface are 0.
     virtual Image build(Flow& flow, Scope scope, const Inputs& inputs) const = 0;

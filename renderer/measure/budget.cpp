@@ -251,7 +251,9 @@ private:
         tried.erase(std::unique(tried.begin(), tried.end(),
                                 [](const auto& a, const auto& b) { return a.first == b.first; }),
                     tried.end());
-        for (size_t i = 0; i < std::min(beginnings, tried.size()) && !space.axes().empty(); ++i) {
+        if (space.axes().empty()) return;
+        const size_t begin = keeps(outcome(tried[0].first)) ? beginnings : 1;
+        for (size_t i = 0; i < std::min(begin, tried.size()); ++i) {
             auto [best, centre] = tried[i];
             for (double step = 0.125; step >= finest;) {
                 if (search_.trials.size() - first >= mostTrials) return;

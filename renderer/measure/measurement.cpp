@@ -117,7 +117,7 @@ private:
 
     // A lane that has drawn its first frames.
     Lane prepare(Setting setting) {
-        Lane lane{{std::move(setting), {}, {}, {}, {}, 0, 0, {}, {}, {}, {}}, nullptr, {}, {}, {}, {}};
+        Lane lane{SettingResult(std::move(setting)), nullptr, {}, {}, {}, {}};
         const bool still = session_.timeStep == 0;
         const Renderer* elder = anyRenderer();
         lane.renderer = elder ? elder->sibling(still) : std::make_unique<Renderer>();
@@ -138,6 +138,9 @@ private:
             static_cast<int>(std::count_if(flow.passes().begin(), flow.passes().end(), [](const Flow::PassNode& pass) {
                 return pass.stage == Stage::ShadowMap && std::holds_alternative<Draw>(pass.work);
             }));
+        lane.result.costPasses =
+            static_cast<int>(std::count_if(flow.passes().begin(), flow.passes().end(),
+                                           [](const Flow::PassNode& pass) { return isCost(pass.stage); }));
         return lane;
     }
 

@@ -49,6 +49,7 @@ struct FrameResult {
 };
 
 struct SettingResult {
+    explicit SettingResult(Setting measured) : setting(std::move(measured)) {}
     Setting setting;
     std::vector<double> milliseconds;          // of the whole frame, one a measured frame
     std::vector<double> costs;                 // of ShadowMap, Prefilter and Resolve together
@@ -56,6 +57,7 @@ struct SettingResult {
     std::vector<PassTimes> passes;
     uint64_t bytes = 0;              // of textures that the frame holds
     int maps = 0;                    // shadow maps that it draws
+    int costPasses = 0;              // passes of ShadowMap, Prefilter and Resolve
     std::optional<Errors> errors;    // of the last frame; of all frames where it moves
     std::optional<double> flicker;   // over the second half of the frames, of a camera at rest
     std::vector<FrameResult> frames; // where it moves

@@ -14,6 +14,7 @@ struct Parameters : ParameterSet {
 class Hard final : public Technique {
 public:
     ParameterSet& parameters() override { return parameters_; }
+    std::optional<TextureReads> readsPerPixel() const override { return TextureReads{1, 1}; }
     Image build(Flow& flow, Scope scope, const Inputs& inputs) const override {
         const ShadowMap map = drawShadowMap(flow, scope, inputs, parameters_.map.describe());
         return resolve(flow, scope, inputs,

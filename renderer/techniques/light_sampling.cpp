@@ -52,6 +52,9 @@ constexpr Channel countChannels[] = {{"maps", "", "maps so far in which the ligh
 class LightSampling final : public Technique {
 public:
     ParameterSet& parameters() override { return parameters_; }
+    std::optional<TextureReads> readsPerPixel() const override {
+        return TextureReads{parameters_.samples, parameters_.samples};
+    }
     Image build(Flow& flow, Scope scope, const Inputs& inputs) const override {
         const int samples = parameters_.samples;
         const int perFrame = inputs.progressive ? std::min<int>(parameters_.mapsPerFrame, samples) : samples;

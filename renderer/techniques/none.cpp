@@ -9,6 +9,7 @@ namespace {
 class None final : public Technique {
 public:
     ParameterSet& parameters() override { return parameters_; }
+    std::optional<TextureReads> readsPerPixel() const override { return TextureReads{0, 0}; }
     Image build(Flow& flow, Scope scope, const Inputs& inputs) const override {
         const LightViewBlock light = lightView(inputs, {.size = 1});
         return resolve(flow, scope, inputs,

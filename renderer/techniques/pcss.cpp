@@ -78,6 +78,9 @@ struct Parameters : ParameterSet {
 class Pcss final : public Technique {
 public:
     ParameterSet& parameters() override { return parameters_; }
+    std::optional<TextureReads> readsPerPixel() const override {
+        return TextureReads{parameters_.searchTaps, parameters_.searchTaps + parameters_.filterTaps};
+    }
     Image build(Flow& flow, Scope scope, const Inputs& inputs) const override {
         const ShadowMap map = drawShadowMap(flow, scope, inputs, parameters_.map.describe());
         return resolve(flow, scope, inputs,

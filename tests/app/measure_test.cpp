@@ -262,7 +262,67 @@ TEST_CASE("views of the project fix camera and light") {
     CHECK(document.at("view").at("camera").at("eye") == json{7.4, 4.6, 8.6});
 }
 
+TEST_CASE("techniques tell how many texels a pixel reads, and how many maps and passes they take") {
+    const json document = measuredJson({"--techniques", "none,pcf,pcss,light-sampling", "--set", "pcf.kernel=5", "--set",
+                                        "samples=3", "--set", "search-taps=8", "--set", "filter-taps=20"});
+    const json& results = document.at("results");
+    const auto reads = [](int least, int most) { return json{{"least", least}, {"most", most}}; };
+    CHECK(results[0].at("reads") == reads(0, 0));
+    CHECK(results[1].at("reads") == reads(36, 36));
+    CHECK(results[2].at("reads") == reads(8, 28));
+    CHECK(results[3].at("reads") == reads(3, 3));
+    CHECK(results[0].at("maps") == 0);
+    CHECK(results[3].at("maps") == 3);
+    CHECK(results[0].at("pass_count") == 1);
+    CHECK(results[1].at("pass_count") == 2);
+    CHECK(results[3].at("pass_count") == 7); // three maps with a count of each, and the mean
+}
+
+TEST_CASE("the best within a budget is searched for, and everything that was tried is told") {
+    const std::vector<std::string> question{"measure", "two-boxes", "--size", "48x32", "--samples", "128", "--techniques",
+                                            "hard,pcf", "--free", "kernel=1:9"};
+    const auto answer = [&](std::vector<std::string> more) {
+        std::vector<std::string> arguments = question;
+        arguments.insert(arguments.end(), more.begin(), more.end());
+        const Result result = runProgram(arguments);
+        INFO(result.errors);
+        REQUIRE(result.exitCode == 0);
+        return result.output;
+    };
+    const json document = json::parse(answer({"--budget-ms", "100000", "--json"}));
+    const json &budget = document.at("budget"), &results = document.at("results");
+    CHECK(budget.at("bound") == "cost");
+    CHECK(budget.at("tried") == results.size());
+    REQUIRE(results.size() == 6); // hard, and kernels of 1, 3, 5, 7 and 9
+    const json& best = results[budget.at("proposal").get<size_t>()];
+    CHECK(best.at("proposal") == true);
+    // Time enough: nothing that was tried is closer by more than nobody sees.
+    for (const json& result : results) {
+        CHECK(best.at("error").at("rmse").get<double>() <= 1.011 * result.at("error").at("rmse").get<double>());
+        CHECK(result.at("proposal") == (result.at("row") == budget.at("proposal")));
+    }
+    CHECK(best.at("cost").at("median") <= 100000);
+    const double rmse = best.at("error").at("rmse");
+    const std::string table = answer({"--budget-rmse", std::to_string(1.02 * rmse)});
+    CHECK(contains(table, "Proposal for an RMSE of at most"));
+    CHECK(contains(table, "--technique "));
+    CHECK(contains(answer({"--budget-rmse", "0.000001", "--csv"}), ",proposal"));
+    CHECK(contains(answer({"--budget-rmse", "0.000001"}), "Nothing that was tried keeps"));
+}
+
 TEST_CASE("bad input to measure is refused in one line") {
+    requireRefused(command({"--budget-ms", "3"}), {"--budget-ms", "--free NAME"});
+    const auto budget = [](std::vector<std::string> more) {
+        more.insert(more.begin(), {"measure", "two-boxes", "--technique", "pcf"});
+        return more;
+    };
+    requireRefused(budget({"--free", "kernel"}), {"--free", "--budget-rmse"});
+    requireRefused(budget({"--free", "kernel", "--budget-ms", "0"}), {"--budget-ms", "'0'", "above 0"});
+    requireRefused(budget({"--free", "kernel", "--budget-ms", "1", "--budget-rmse", "1"}), {"one of them"});
+    requireRefused(budget({"--free", "kernel", "--budget-ms", "1", "--sweep", "kernel=3,5"}), {"--sweep"});
+    requireRefused(budget({"--free", "kernal", "--budget-ms", "1"}), {"did you mean 'kernel'?"});
+    requireRefused(budget({"--free", "kernel=1:99", "--budget-ms", "1"}), {"1..63 texels"});
+    requireRefused(budget({"--free", "pcss.filter-taps", "--budget-ms", "1"}), {"no technique that is measured"});
     requireRefused(command({"--techniques", "pcg"}), {"'pcg'", "did you mean 'pcf'?"});
     requireRefused(command({"--techniques", "pcf,"}), {"''"});
     requireRefused(command({"--technique", "pcf", "--set", "kernal=3"}), {"'kernal'", "did you mean 'kernel'?"});
