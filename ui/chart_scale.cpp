@@ -59,16 +59,17 @@ Ticks ticksOf(const ChartAxis& axis, int room) {
         for (double i = std::ceil(axis.from / step - 1e-9); i * step <= axis.to * (1 + 1e-12); ++i) add(i * step + 0.0); // no −0
         return ticks;
     }
-    const int perDecade = 3 * decades <= room ? 3 : 2 * decades <= room ? 2 : 1;
+    using Digits = std::span<const double>;
+    static constexpr double six[] = {1, 1.5, 2, 3, 5, 7}, three[] = {1, 2, 5}, two[] = {1, 3}, one[] = {1};
+    Digits digits = one;
+    for (const Digits more : {Digits(two), Digits(three), Digits(six)})
+        if (static_cast<double>(more.size()) * decades <= room) digits = more;
     const int stride = std::max(1, static_cast<int>(std::ceil(decades / room)));
     const int first = static_cast<int>(std::floor(std::log10(axis.from)));
     for (int decade = first; std::pow(10.0, decade) <= axis.to; ++decade) {
         if (((decade % stride) + stride) % stride != 0) continue;
         const double power = std::pow(10.0, std::abs(decade));
-        const auto times = [&](double digit) { return decade < 0 ? digit / power : digit * power; };
-        add(times(1));
-        if (perDecade == 2) add(times(3));
-        if (perDecade == 3) add(times(2)), add(times(5));
+        for (const double digit : digits) add(decade < 0 ? digit / power : digit * power);
     }
     return ticks;
 }

@@ -20,8 +20,8 @@ struct ChartAxis {
 // no values: 0 to 1, or 0.1 to 10.
 ChartAxis fitAxis(std::span<const double> values, bool logarithmic);
 
-// At multiples of 1, 2 or 5 times a power of ten; logarithmic at 1, 2 and 5, at 1 and 3 or at 1 of each decade. `room`
-// is how many labels fit.
+// At multiples of 1, 2 or 5 times a power of ten; logarithmic at 1, 1.5, 2, 3, 5 and 7, at 1, 2 and 5, at 1 and 3 or at 1
+// of each decade. `room` is about how many labels fit.
 using Ticks = FixedVector<double, 32>;
 Ticks ticksOf(const ChartAxis& axis, int room);
 

@@ -139,7 +139,8 @@ void TradeOffPanel::arrange() {
         const MeasuredPoint& point = points_[i];
         if (point.view != view || point.cost.count == 0) continue;
         shown_.push_back(i);
-        costs.push_back(point.cost.median);
+        for (const double cost : {point.cost.median, point.cost.interval.low, point.cost.interval.high})
+            costs.push_back(cost);
         errors.push_back(errorOf(point));
         all.push_back({point.cost.median, errorOf(point)});
     }
@@ -176,11 +177,8 @@ void TradeOffPanel::search(const Session& session, uint64_t view) {
     for (const Card* card : catalogue())
         if (!left_.contains(std::string(card->id)))
             question.starts.emplace_back(*card, session.techniques.parametersOf(card->id));
-    for (const std::string& name : free_) {
-        const bool searched = std::any_of(question.starts.begin(), question.starts.end(),
-                                          [&](const Setting& setting) { return findParameter(setting, name); });
-        if (searched) question.free.push_back({name, {}, {}});
-    }
+    for (const FreeParameter& free : free_)
+        if (!left_.contains(free.name.substr(0, free.name.find('.')))) question.free.push_back(free);
     asked_ = question.budget =
         bound_ == Bound::Cost ? Budget{bound_, double(mostMilliseconds_)} : Budget{bound_, double(mostError_)};
     std::vector<Session> views;
@@ -342,7 +340,7 @@ void TradeOffPanel::dots(const Session& session, ImVec2 from, ImVec2 to) {
 // Of the techniques, beside their dots where they hide no other.
 void TradeOffPanel::names(ImVec2 from, ImVec2 to) const {
     ImDrawList& list = *ImGui::GetWindowDrawList();
-    const float em = ImGui::GetFontSize(), gap = 0.75f * em, height = ImGui::GetTextLineHeight();
+    const float em = ImGui::GetFontSize(), gap = 0.45f * em, height = ImGui::GetTextLineHeight();
     FixedVector<ImVec4, 64> taken; // left, top, right, bottom
     const auto overlaps = [](const ImVec4& a, const ImVec4& b) {
         return a.x < b.z && b.x < a.z && a.y < b.w && b.y < a.w;
@@ -355,10 +353,12 @@ void TradeOffPanel::names(ImVec2 from, ImVec2 to) const {
         if (!dot.current) continue;
         const Card& card = *points_[dot.point].setting.card;
         const float width = widthOf(card.id);
-        const ImVec2 corners[] = {{dot.place.x + gap, dot.place.y - height / 2},
-                                  {dot.place.x - gap - width, dot.place.y - height / 2},
-                                  {dot.place.x - width / 2, dot.place.y - gap - height},
-                                  {dot.place.x - width / 2, dot.place.y + gap}};
+        // Lines run across and down from the dots.
+        const float above = dot.place.y - height - 0.25f * em, below = dot.place.y + 0.25f * em;
+        const ImVec2 corners[] = {{dot.place.x + gap, above},
+                                  {dot.place.x - gap - width, above},
+                                  {dot.place.x - gap - width, below},
+                                  {dot.place.x + gap, below}};
         for (const ImVec2 corner : corners) {
             const ImVec4 box{corner.x, corner.y, corner.x + width, corner.y + height};
             if (box.x < from.x || box.z > to.x + 0.8f * em || box.y < from.y - height || box.w > to.y) continue;
@@ -491,18 +491,24 @@ void TradeOffPanel::budgetForm(Session& session, Requests& requests) {
         if (ImGui::SmallButton("×")) views_.clear(), viewHashes_.clear();
         tooltip("Forget them: search in the present view");
     }
-    const bool ready = !measuring() && !free_.empty() && techniques > 0;
+    const bool ready = !measuring() && techniques > 0 &&
+                       std::any_of(free_.begin(), free_.end(), [&](const FreeParameter& f) {
+                           return !left_.contains(f.name.substr(0, f.name.find('.')));
+                       });
     ImGui::BeginDisabled(!ready);
     if (ImGui::Button("Search", {-FLT_MIN, 0})) search(session, view_);
     ImGui::EndDisabled();
-    tooltip(free_.empty() ? "Mark at least one parameter as free"
+    tooltip(!ready && !measuring() ? "Mark at least one parameter as free"
                           : "A coarse grid of the free parameters, then smaller and smaller steps from the best of it");
     proposal(session, requests);
 }
 
 void TradeOffPanel::freeList() {
-    ImGui::SetNextWindowSizeConstraints({0, 0}, {FLT_MAX, 30 * ImGui::GetFontSize()});
+    const float em = ImGui::GetFontSize();
+    ImGui::SetNextWindowSizeConstraints({27 * em, 0}, {FLT_MAX, 30 * em});
     if (!ImGui::BeginPopup("free")) return;
+    static const TechniqueShelf shelf; // of declarations
+    text(colour::muted, "Techniques to look at; below each what may be turned, and how far");
     for (const Card* card : catalogue()) {
         ImGui::PushID(card);
         const std::string id(card->id);
@@ -515,26 +521,46 @@ void TradeOffPanel::freeList() {
         }
         tooltip("Look at this technique");
         if (searched) {
-            static const TechniqueShelf shelf; // of declarations
             ImGui::Indent();
-            for (const Parameter* parameter : shelf.parametersOf(id).all()) {
-                const std::string name = parameter->qualifiedName();
-                bool free = free_.contains(name);
-                ImGui::PushID(parameter);
-                if (ImGui::Checkbox(parameter->label().c_str(), &free)) {
-                    if (free)
-                        free_.insert(name);
-                    else
-                        free_.erase(name);
-                }
-                tooltip(ShortText("{}\n{}", name, parameter->rangeText()).view());
-                ImGui::PopID();
-            }
+            for (const Parameter* parameter : shelf.parametersOf(id).all()) freeRow(*parameter);
             ImGui::Unindent();
         }
         ImGui::PopID();
     }
     ImGui::EndPopup();
+}
+
+void TradeOffPanel::freeRow(const Parameter& parameter) {
+    const Spec& spec = parameter.spec();
+    const std::string name = parameter.qualifiedName();
+    const auto found = std::find_if(free_.begin(), free_.end(), [&](const FreeParameter& f) { return f.name == name; });
+    bool free = found != free_.end();
+    ImGui::PushID(&parameter);
+    const bool turned = ImGui::Checkbox(parameter.label().c_str(), &free);
+    tooltip(ShortText("{}\n{}", name, parameter.rangeText()).view());
+    const bool number = parameter.type() == Parameter::Type::Real || parameter.type() == Parameter::Type::Integer;
+    if (turned && free) {
+        free_.push_back({name, spec.min, spec.max});
+    } else if (turned) {
+        free_.erase(found);
+    } else if (free && number) {
+        const float em = ImGui::GetFontSize();
+        const auto end = [&](const char* label, double& value, double least, double most) {
+            ImGui::SetNextItemWidth(5 * em);
+            ImGui::InputDouble(label, &value, 0, 0, "%.6g");
+            if (ImGui::IsItemDeactivatedAfterEdit()) value = parameter.nearest(std::clamp(value, least, most));
+            tooltip(ShortText("From where to where it is searched{}{}", unitName(spec.unit).empty() ? "" : ", in ",
+                              unitName(spec.unit))
+                        .view());
+        };
+        ImGui::SameLine(16 * em);
+        end("##from", *found->from, spec.min, *found->to);
+        ImGui::SameLine();
+        text(colour::muted, "to");
+        ImGui::SameLine();
+        end("##to", *found->to, *found->from, spec.max);
+    }
+    ImGui::PopID();
 }
 
 void TradeOffPanel::proposal(Session& session, Requests& requests) {
@@ -546,12 +572,13 @@ void TradeOffPanel::proposal(Session& session, Requests& requests) {
         return;
     }
     const Trial& best = found_->trials[*found_->proposal];
-    wrappedText(ShortText("{}{} of {} tried: {}", found_->complete ? "Best" : "Best so far", "",
-                          found_->trials.size(), best.setting.card->title)
+    wrappedText(ShortText("{} of {} tried: {}", found_->complete ? "Best" : "Best so far", found_->trials.size(),
+                          best.setting.card->title)
                     .view());
     std::string values;
     for (const Parameter* parameter : best.setting.parameters().all())
-        if (free_.contains(parameter->qualifiedName()))
+        if (std::any_of(free_.begin(), free_.end(),
+                        [&](const FreeParameter& f) { return f.name == parameter->qualifiedName(); }))
             values += fmt::format("{}{} {}", values.empty() ? "" : ", ", parameter->label(), parameter->text());
     wrappedText(colour::accent, values);
     wrappedText(ShortText("{:.3g} ms ({:.3g} to {:.3g}), RMSE {:.4f}{}", best.outcome.cost, best.outcome.interval.low,

@@ -77,6 +77,7 @@ private:
     void progress();
     void budgetForm(Session& session, Requests& requests);
     void freeList();
+    void freeRow(const Parameter& parameter);
     void proposal(Session& session, Requests& requests);
 
     BackgroundMeasurement measurement_;
@@ -108,7 +109,8 @@ private:
     bool logCost_ = true, logError_ = false;
     Bound bound_ = Bound::Cost;
     float mostMilliseconds_ = 5, mostError_ = 0.05f;
-    std::set<std::string> free_, left_; // qualified names of free parameters; techniques that are left out
+    std::vector<FreeParameter> free_;   // by qualified name, with both ends of their ranges
+    std::set<std::string> left_;        // techniques that are left out
     std::vector<Session> views_;        // kept for searches
     std::vector<uint64_t> viewHashes_;
     Budget asked_;

@@ -1,0 +1,77 @@
+#!/usr/bin/env bash
+# SPDX-License-Identifier: MIT
+# Uses the trade-off panel of the real program with the mouse: measures all techniques, points at a dot, takes its values
+# by a click, saves chart and table, cancels, and quits while measuring.
+source "$(dirname "${BASH_SOURCE[0]}")/person.sh"
+
+# Places in a window of 1280x720.
+measure_all="650 336" cancel="832 336" save_png="660 444" save_csv="711 444" away="700 650"
+chart="12 325 528 385" # x, y, width, height
+
+press() { xdotool mousemove $1 $2; frames 2; xdotool mousedown 1; frames 2; xdotool mouseup 1; frames 2; }
+files() { find "$HOME/Pictures" -name "*.$1" -printf '%T@ %p\n' | sort -n | cut -d' ' -f2-; }
+saved() { # presses a button that saves, and names the new file with that ending
+    local before now
+    before=$(files "$1" | wc -l)
+    press $2
+    for _ in $(seq 50); do
+        now=$(files "$1" | wc -l)
+        ((now > before)) && { files "$1" | tail -n 1; return; }
+        sleep 0.1
+    done
+    return 1
+}
+# Whether the table tells of every technique that it was measured side by side, over 20 frames, in the present view.
+measured() {
+    sleep 1
+    table=$(saved csv "$save_csv") || return 1
+    (($(grep -cE '^[a-z-]+,.*,20,[0-9.e-]+,[0-9.e-]+,[0-9]+,[0-9]+,true,' "$table") == $1))
+}
+# Where the chart has a run of seven pixels of the second technique's colour: its dot. "X Y", or nothing.
+dot() {
+    set -- $chart
+    "$person" look "$window" "$1" "$2" "$3" "$4" | tr -s ' \n' '\n\n' | awk -v left="$1" -v top="$2" -v width="$3" '
+        function near(a, b) { return a - b < 12 && b - a < 12 }
+        {
+            run = near(strtonum("0x" substr($1, 1, 2)), 242) && near(strtonum("0x" substr($1, 3, 2)), 121) &&
+                near(strtonum("0x" substr($1, 5, 2)), 149) ? run + 1 : 0
+            if (run == 7) { print left + (NR - 1) % width - 3, top + int((NR - 1) / width); exit }
+        }'
+}
+
+start two-boxes --technique pcss --size 1280x720 --set light-sampling.samples=2 --set light-sampling.map-size=64
+hand key m
+press $measure_all
+xdotool mousemove $away
+until_ measured 5
+hand mousemove $away
+
+place=$(dot)
+[[ -n $place ]] || fail "the chart shows no dot of hard shadows"
+plain=$("$person" look "$window" $chart | cksum)
+xdotool mousemove $place
+frames 4
+[[ $("$person" look "$window" $chart | cksum) != "$plain" ]] || fail "pointing at a dot tells nothing"
+press $place
+view=$(picture) || fail "no picture after a click on a dot"
+grep -aqE '"(id|technique)": ?"hard"' "$view" || fail "the click did not choose hard shadows"
+
+hand mousemove $away
+png=$(saved png "$save_png") || fail "the chart was not saved"
+[[ $(basename "$png") == two-boxes-hard-trade-off-* && $(sizeOf "$png") == 528x385 ]] ||
+    fail "the chart was saved as $(basename "$png") of $(sizeOf "$png") pixels"
+
+# Another view has points of its own.
+drag 400 150 460 170
+hand mousemove $away
+ready=$("$person" look "$window" 800 330 60 12 | cksum)
+[[ -z $(dot) ]] || fail "points of another view are shown"
+press $measure_all
+press $cancel
+xdotool mousemove $away
+stopped() { [[ $("$person" look "$window" 800 330 60 12 | cksum) == "$ready" ]]; } # the button is whole again
+until_ stopped
+press $measure_all
+xdotool key ctrl+q
+ended "Ctrl+Q while measuring"
+echo "all done"
