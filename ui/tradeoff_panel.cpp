@@ -161,6 +161,7 @@ void TradeOffPanel::begin(const Session& session, uint64_t view) {
     measuredScene_ = session.scene->name;
     measuredSize_ = session.size;
     tried_ = 0;
+    asked_ = {};
     found_.reset();
     several_.reset();
 }
@@ -179,7 +180,7 @@ void TradeOffPanel::search(const Session& session, uint64_t view) {
             question.starts.emplace_back(*card, session.techniques.parametersOf(card->id));
     for (const FreeParameter& free : free_)
         if (!left_.contains(free.name.substr(0, free.name.find('.')))) question.free.push_back(free);
-    asked_ = question.budget =
+    question.budget =
         bound_ == Bound::Cost ? Budget{bound_, double(mostMilliseconds_)} : Budget{bound_, double(mostError_)};
     std::vector<Session> views;
     for (const Session& kept : views_) views.push_back(stillView(kept));
@@ -191,7 +192,8 @@ void TradeOffPanel::search(const Session& session, uint64_t view) {
         view = hash.value();
     }
     begin(session, view);
-    if (!views_.empty() && view != view_) several_ = view;
+    asked_ = question.budget;
+    if (view != view_) several_ = view;
     measurement_.search(std::move(views), std::move(question), besideWindow(cache_));
 }
 

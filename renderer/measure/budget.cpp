@@ -22,6 +22,7 @@ constexpr int comparisons = 3;         // at most, until one of them keeps the b
 constexpr double equalErrors = 0.01;   // relative difference that nobody sees
 constexpr int quickFrames = 6;         // fewer have no interval of the median at 95 percent
 constexpr int carefulFrames = 20;
+constexpr size_t sideBySide = 8; // that are measured, so that results keep coming
 
 // A free parameter of one technique.
 struct Axis {
@@ -229,12 +230,12 @@ private:
         }
         if (search_.trials.size() > known) {
             const std::span<Trial> fresh(search_.trials.begin() + static_cast<ptrdiff_t>(known), search_.trials.end());
-            try {
-                const std::vector<Outcome> outcomes = evaluate_(fresh, false);
-                for (size_t i = 0; i < outcomes.size(); ++i) fresh[i].outcome = outcomes[i];
-            } catch (const Cancelled&) {
-                search_.trials.erase(search_.trials.begin() + static_cast<ptrdiff_t>(known), search_.trials.end());
-                throw;
+            const std::vector<Outcome> outcomes = evaluate_(fresh, false);
+            for (size_t i = 0; i < outcomes.size(); ++i) fresh[i].outcome = outcomes[i];
+            if (outcomes.size() < fresh.size()) {
+                search_.trials.erase(search_.trials.begin() + static_cast<ptrdiff_t>(known + outcomes.size()),
+                                     search_.trials.end());
+                throw Cancelled{};
             }
         }
         return places;
@@ -293,10 +294,11 @@ private:
                 again.back().setting.place = place;
             }
             const std::vector<Outcome> outcomes = evaluate_(again, true);
-            for (size_t i = 0; i < places.size(); ++i) {
+            for (size_t i = 0; i < outcomes.size(); ++i) {
                 search_.trials[places[i]].outcome = outcomes[i];
                 search_.trials[places[i]].careful = true;
             }
+            if (outcomes.size() < places.size()) throw Cancelled{};
             if (std::any_of(places.begin(), places.end(), [&](size_t place) { return keeps(outcome(place)); })) return;
         }
     }
@@ -345,6 +347,55 @@ double number(std::string_view text, std::string_view whole) {
     return value;
 }
 
+// Measures the settings in all views and puts together the dearest of each and the worst errors; nothing if it was
+// cancelled.
+std::optional<std::vector<SettingResult>> worstOf(std::vector<Measurer>& views, std::span<const Trial> trials,
+                                                  bool carefully, Measurer::Share share) {
+    std::vector<SettingResult> worst;
+    double viewsDone = 0;
+    for (Measurer& view : views) {
+        const auto shareOf = [&](double v) { return std::lerp(share.from, share.to, v / double(views.size())); };
+        std::vector<Setting> settings;
+        for (const Trial& trial : trials) {
+            settings.push_back(trial.setting.copy());
+            settings.back().place = trial.setting.place;
+        }
+        Measurement measurement = view.measure(std::move(settings), carefully ? carefulFrames : quickFrames,
+                                               {shareOf(viewsDone), shareOf(viewsDone + 1)});
+        ++viewsDone;
+        if (!measurement.complete) return std::nullopt;
+        if (worst.empty()) {
+            worst = std::move(measurement.results);
+            continue;
+        }
+        for (size_t i = 0; i < worst.size(); ++i) {
+            SettingResult& here = measurement.results[i];
+            // What is not known in one view is not known of all.
+            if (!worst[i].trouble.empty() || !here.trouble.empty()) {
+                if (worst[i].trouble.empty()) worst[i] = std::move(here);
+                continue;
+            }
+            const Errors errors =
+                here.errors->all.rmse > worst[i].errors->all.rmse ? *here.errors : *worst[i].errors;
+            if (median(here.costs) > median(worst[i].costs)) worst[i] = std::move(here);
+            worst[i].errors = errors;
+        }
+    }
+    return worst;
+}
+
+Outcome outcomeOf(const SettingResult& result) {
+    Outcome outcome;
+    if (!result.costs.empty()) {
+        const TimeSummary cost = summarise(result.costs);
+        outcome.cost = cost.median;
+        outcome.interval = cost.interval;
+    }
+    if (result.errors) outcome.error = result.errors->all.rmse;
+    outcome.trouble = result.trouble;
+    return outcome;
+}
+
 } // namespace
 
 std::vector<FreeParameter> parseFree(std::string_view text) {
@@ -389,53 +440,21 @@ BudgetSearch searchBudget(std::span<const Setting> starts, std::span<const FreeP
 Evaluate measuredIn(std::vector<Measurer>& views, size_t expected, std::function<void(SettingResult)> tried) {
     return [&views, tried = std::move(tried), done = size_t{0}, expected](std::span<const Trial> trials,
                                                                           bool carefully) mutable {
-        std::vector<SettingResult> worst;
-        // The last comparison, of which nobody knew, is the end.
-        const auto share = [&](size_t trial) {
-            return std::min(static_cast<double>(trial) / static_cast<double>(std::max<size_t>(expected, 1)), 0.95);
-        };
-        const double from = share(done), to = carefully ? 1 : share(done + trials.size());
-        done += trials.size();
-        double viewsDone = 0;
-        for (Measurer& view : views) {
-            const auto viewShare = [&](double v) { return std::lerp(from, to, v / static_cast<double>(views.size())); };
-            std::vector<Setting> settings;
-            for (const Trial& trial : trials) {
-                settings.push_back(trial.setting.copy());
-                settings.back().place = trial.setting.place;
-            }
-            Measurement measurement =
-                view.measure(std::move(settings), carefully ? carefulFrames : quickFrames,
-                             {viewShare(viewsDone), viewShare(viewsDone + 1)});
-            ++viewsDone;
-            if (!measurement.complete) throw Cancelled{};
-            if (worst.empty()) {
-                worst = std::move(measurement.results);
-                continue;
-            }
-            for (size_t i = 0; i < worst.size(); ++i) {
-                SettingResult& here = measurement.results[i];
-                const auto rmse = [](const SettingResult& result) {
-                    return result.errors ? result.errors->all.rmse : std::numeric_limits<double>::infinity();
-                };
-                const std::optional<Errors> errors = rmse(here) > rmse(worst[i]) ? here.errors : worst[i].errors;
-                const bool dearer = here.costs.empty() || median(here.costs) > median(worst[i].costs);
-                if (dearer && !worst[i].costs.empty()) worst[i] = std::move(here);
-                worst[i].errors = errors;
-            }
-        }
         std::vector<Outcome> outcomes;
-        for (SettingResult& result : worst) {
-            Outcome outcome;
-            if (!result.costs.empty()) {
-                const TimeSummary cost = summarise(result.costs);
-                outcome.cost = cost.median;
-                outcome.interval = cost.interval;
+        for (size_t first = 0; first < trials.size(); first += sideBySide) {
+            const auto some = trials.subspan(first, std::min(sideBySide, trials.size() - first));
+            // The last comparison, of which nobody knew, is the end.
+            const auto share = [&](size_t trial) {
+                return std::min(static_cast<double>(trial) / static_cast<double>(std::max<size_t>(expected, 1)), 0.95);
+            };
+            const double from = share(done), to = carefully ? 1 : share(done + some.size());
+            done += some.size();
+            std::optional<std::vector<SettingResult>> results = worstOf(views, some, carefully, {from, to});
+            if (!results) break; // cancelled
+            for (SettingResult& result : *results) {
+                outcomes.push_back(outcomeOf(result));
+                tried(std::move(result));
             }
-            if (result.errors) outcome.error = result.errors->all.rmse;
-            outcome.trouble = result.trouble;
-            outcomes.push_back(std::move(outcome));
-            tried(std::move(result));
         }
         return outcomes;
     };

@@ -49,7 +49,7 @@ struct Trial {
     bool careful = false; // measured for longer, beside others
 };
 
-// Finds out about settings, in their order; carefully: with more frames. May throw Cancelled.
+// Finds out about settings, in their order; carefully: with more frames. Cancelled, it returns the first of them only.
 using Evaluate = std::function<std::vector<Outcome>(std::span<const Trial> trials, bool carefully)>;
 
 struct BudgetSearch {
