@@ -533,7 +533,6 @@ Actions actionsOn(Session& session, const Renderer& renderer, const Window& wind
 
 int runWindow(Session& session, glm::ivec2 size) {
     session.progressive = true;
-    session.rival.choose("hard"); // to begin with, what soft shadows improve on
     const Glfw glfw;
     Window window(size);
     Renderer renderer;

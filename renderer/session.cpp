@@ -31,9 +31,9 @@ fs::path builtInScene(std::string_view name) {
 
 } // namespace
 
-TechniqueShelf::TechniqueShelf() {
+TechniqueShelf::TechniqueShelf(std::string_view chosen) {
     for (const Card* card : catalogue()) techniques_.push_back(makeTechnique(*card));
-    choose("pcss"); // soft shadows at once
+    choose(chosen);
 }
 
 void TechniqueShelf::choose(std::string_view id) { chosen_ = indexOf(id); }

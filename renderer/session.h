@@ -39,7 +39,7 @@ struct DisplaySettings {
 // One instance of every technique of the catalogue, so that switching to and fro loses no value; one is chosen.
 class TechniqueShelf {
 public:
-    TechniqueShelf();
+    explicit TechniqueShelf(std::string_view chosen = "pcss"); // soft shadows at once
     void choose(std::string_view id); // throws InputError
     const Card& card() const;
     Technique& technique() const { return *techniques_[chosen_]; }
@@ -110,7 +110,7 @@ struct Session {
     TechniqueShelf techniques;
     DisplaySettings display;
     Comparison comparison;
-    TechniqueShelf rival;                    // technique B
+    TechniqueShelf rival{"hard"};            // technique B: to begin with, what soft shadows improve on
     std::shared_ptr<const TruthImage> truth; // if it is wanted and there is one
     size_t clip = 0;                         // of the scene's animations
     double time = 0;                         // of the clip [s]

@@ -21,20 +21,22 @@ saved() { # presses a button that saves, and names the new file with that ending
     done
     return 1
 }
+techniques=$("$penumbra" list --json | grep -c '^      "id":')
 # Whether the table tells of every technique that it was measured side by side, over 20 frames, in the present view.
 measured() {
     sleep 1
     table=$(saved csv "$save_csv") || return 1
-    (($(grep -cE '^[a-z-]+,.*,20,[0-9.e-]+,[0-9.e-]+,[0-9]+,[0-9]+,true,' "$table") == $1))
+    (($(grep -cE '^[a-z-]+,.*,20,[0-9.e-]+,[0-9.e-]+,[0-9]+,[0-9]+,true,' "$table") == techniques))
 }
 # Where the chart has a run of seven pixels of the second technique's colour: its dot. "X Y", or nothing.
 dot() {
     set -- $chart
     "$person" look "$window" "$1" "$2" "$3" "$4" | tr -s ' \n' '\n\n' | awk -v left="$1" -v top="$2" -v width="$3" '
         function near(a, b) { return a - b < 12 && b - a < 12 }
+        function byte(at) { return 16 * index(digits, substr($1, at, 1)) + index(digits, substr($1, at + 1, 1)) - 17 }
+        BEGIN { digits = "0123456789abcdef" }
         {
-            run = near(strtonum("0x" substr($1, 1, 2)), 242) && near(strtonum("0x" substr($1, 3, 2)), 121) &&
-                near(strtonum("0x" substr($1, 5, 2)), 149) ? run + 1 : 0
+            run = near(byte(1), 242) && near(byte(3), 121) && near(byte(5), 149) ? run + 1 : 0
             if (run == 7) { print left + (NR - 1) % width - 3, top + int((NR - 1) / width); exit }
         }'
 }
@@ -43,7 +45,7 @@ start two-boxes --technique pcss --size 1280x720 --set light-sampling.samples=2 
 hand key m
 press $measure_all
 xdotool mousemove $away
-until_ measured 5
+until_ measured
 hand mousemove $away
 
 place=$(dot)
