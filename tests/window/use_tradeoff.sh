@@ -37,7 +37,7 @@ dot() {
         BEGIN { digits = "0123456789abcdef" }
         {
             run = near(byte(1), 242) && near(byte(3), 121) && near(byte(5), 149) ? run + 1 : 0
-            if (run == 7) { print left + (NR - 1) % width - 3, top + int((NR - 1) / width); exit }
+            if (run == 7 && !found++) print left + (NR - 1) % width - 3, top + int((NR - 1) / width)
         }'
 }
 
