@@ -25,10 +25,9 @@ Flow flowOf(const Session& session) {
     SceneState state;
     state.setScene(session.scene);
     state.update(session.clip, session.time, session.ground);
-    const glm::mat4 clipFromWorld = sessionView(session, state.bounds()).clipFromWorld;
     Flow flow;
     flow.begin();
-    buildFrame(flow, session, state, nullptr, clipFromWorld);
+    buildFrame(flow, session, state, nullptr, nullptr);
     return flow;
 }
 

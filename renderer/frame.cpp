@@ -25,7 +25,8 @@ constexpr Channel colourChannels[] = {
     {"blue", "", "square root of the linear base colour", Unit::None, 0, 1},
     {"own", "", "share of it that shines by itself: emissive or unlit", Unit::None, 0, 1}};
 constexpr Channel motionChannels[] = {{"x", "", "last frame's place minus this frame's", Unit::Pixels},
-                                      {"y", "", "last frame's place minus this frame's", Unit::Pixels}};
+                                      {"y", "", "last frame's place minus this frame's", Unit::Pixels},
+                                      {"depth", "", "last frame's depth minus this frame's", Unit::Metres}};
 constexpr Channel zChannels[] = {{"z", "", "the rasteriser's own depth; 1: near plane, 0: far plane"}};
 constexpr Channel litChannels[] = {{"red", "", "reflected light, linear"},
                                    {"green", "", "reflected light, linear"},
@@ -90,7 +91,7 @@ Surfaces drawSurfaces(Flow& flow, const View& view, const SceneState& state, con
     if (state.moving()) { // a still scene's motion follows from the two views
 
         draw.defines.push_back({"MOTION", 3});
-        pass.writes.push_back({"motion", Format::RG16F, extent, motionChannels});
+        pass.writes.push_back({"motion", Format::RGBA16F, extent, motionChannels});
     }
     pass.writes.push_back({"z-buffer", Format::Depth32F, extent, zChannels});
     pass.work = draw;
@@ -100,6 +101,7 @@ Surfaces drawSurfaces(Flow& flow, const View& view, const SceneState& state, con
 
 Image shade(Flow& flow, Scope scope, const Session& session, const View& view, const Surfaces& surfaces, Image shadow) {
     const AreaLight& light = session.light;
+    const Extent extent = flow.spec(shadow).extent;
     const LightingConstants constants{
         viewBlock(view), lightFromWorld(light), vec4(light.colour * light.intensity, session.display.ambient),
         vec4(static_cast<float>(light.shape), glm::distance(light.position, light.target), light.size)};
@@ -110,7 +112,7 @@ Image shade(Flow& flow, Scope scope, const Session& session, const View& view, c
                                        {"normal", surfaces.buffer.normal},
                                        {"colour", surfaces.colour},
                                        {"shadow", shadow}},
-                             .writes = {{"lit", Format::RGBA16F, {view.size.x, view.size.y}, litChannels}},
+                             .writes = {{"lit", Format::RGBA16F, extent, litChannels}},
                              .constants = constants});
 }
 
@@ -177,15 +179,26 @@ View sessionView(const Session& session, const Bounds& bounds) {
 }
 
 Frame buildFrame(Flow& flow, const Session& session, const SceneState& state, const Geometry* geometry,
-                 const glm::mat4& lastClipFromWorld) {
-    const View view = sessionView(session, state.bounds());
-    pose(flow, state, geometry);
-    const Surfaces surfaces = drawSurfaces(flow, view, state, geometry, lastClipFromWorld);
-    const Inputs inputs{view,          session.light, surfaces.buffer, geometry, state.poseVersion(), state.occluders(),
-                        session.frame, session.seed, session.progressive};
-    // Two techniques are instances a and b of one frame; what both need alike is made once.
+                 const LastFrame* last) {
     const Comparison& comparison = session.comparison;
-    const bool two = comparison.against == Against::Technique, lit = session.display.show == Show::Lit;
+    const bool two = comparison.against == Against::Technique;
+    // One geometry buffer for all, as large as any of them wants it.
+    const auto marginOf = [&](glm::ivec2 size) {
+        const glm::ivec2 own = session.techniques.technique().margin(size);
+        return two ? glm::max(own, session.rival.technique().margin(size)) : own;
+    };
+    const glm::ivec2 margin = marginOf(session.size);
+    const View view = grown(sessionView(session, state.bounds()), margin);
+    const View lastView = last ? grown(last->view, marginOf(last->view.size)) : view;
+    pose(flow, state, geometry);
+    const Surfaces surfaces = drawSurfaces(flow, view, state, geometry, lastView.clipFromWorld);
+    const Inputs inputs{view,          session.light,       surfaces.buffer,
+                        geometry,      state.poseVersion(), state.occluders(),
+                        session.frame, session.seed,        session.progressive,
+                        margin,        last};
+    // Two techniques are instances a and b of one frame; what they need alike, such as the geometry buffer, is made
+    // once.
+    const bool lit = session.display.show == Show::Lit;
     const auto build = [&](const TechniqueShelf& shelf, std::string_view instance) {
         return shelf.technique().build(flow, {instance, shelf.card().id}, inputs);
     };
@@ -193,7 +206,7 @@ Frame buildFrame(Flow& flow, const Session& session, const SceneState& state, co
     std::optional<Image> rival, other; // what is compared with
     if (two) rival = other = build(session.rival, "b");
     if (const TruthImage* known = session.currentTruth()) {
-        const Image truth = supply(flow, *known, view.size);
+        const Image truth = supply(flow, *known, session.size);
         if (comparison.against == Against::Truth) other = truth;
     }
 

@@ -12,13 +12,13 @@ struct Frame {
     Image shadow;               // ψ
     std::optional<Image> rival; // ψ of technique B, where the picture compares two
     Image display;              // RGBA8, sRGB; twice as wide as the view where two stand side by side
-    Image depth;                // of the surfaces seen, along the view axis [m]; 0: none
+    Image depth;                // of the surfaces seen, along the view axis [m]; 0: none. May have a margin
 };
 
 // Appends the passes of a session's frame to a flow that has begun. `geometry` may be null: the passes are listed all
-// the same. `lastClipFromWorld` is the view of the frame before, for motion.
+// the same. `last` is null in a first frame.
 Frame buildFrame(Flow& flow, const Session& session, const SceneState& state, const Geometry* geometry,
-                 const glm::mat4& lastClipFromWorld);
+                 const LastFrame* last);
 
 // The view of a session: near and far planes hold the whole scene.
 View sessionView(const Session& session, const Bounds& bounds);

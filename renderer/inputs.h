@@ -15,7 +15,8 @@ namespace penumbra {
 struct GeometryBuffer {
     Image depth;                 // R32F: eye depth [m], 0 where there is no surface
     Image normal;                // RGBA16Snorm: xy geometric, zw shading normal, world space, octahedral
-    std::optional<Image> motion; // RG16F: last frame's position minus this one's [pixels]; only when something moves
+    // RGBA16F: last frame's position minus this one's, xy [pixels] and z eye depth [m]; only when something moves.
+    std::optional<Image> motion;
 };
 
 // One drawable's box, for fitting shadow maps.
@@ -26,8 +27,14 @@ struct Occluder {
     bool moved = false;  // its pose differs from the last frame's
 };
 
+// What the frame before was drawn with.
+struct LastFrame {
+    View view; // without a margin
+    AreaLight light;
+};
+
 struct Inputs {
-    const View& view;
+    const View& view; // of the geometry buffer: the picture with Technique::margin() around it
     const AreaLight& light;
     GeometryBuffer geometryBuffer;
     const Geometry* geometry; // what casts; null in an empty scene
@@ -35,7 +42,11 @@ struct Inputs {
     std::span<const Occluder> occluders;
     uint32_t frame; // index of the frame since the last reset, for sequences
     uint32_t seed;
-    bool progressive = false; // the frame may show a part of the work; later ones do the rest
+    bool progressive = false;  // the frame may show a part of the work; later ones do the rest
+    glm::ivec2 margin{0, 0};   // of the view [pixels]
+    const LastFrame* last = nullptr; // null: this is the first
+
+    glm::ivec2 pictureSize() const { return view.size - 2 * margin; }
 };
 
 } // namespace penumbra

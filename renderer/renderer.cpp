@@ -62,7 +62,7 @@ std::unique_ptr<Renderer> Renderer::sibling(bool sharesScene) const {
 void Renderer::reset() {
     flow_.forget();
     if (drawn_) drawn_->state_.restart();
-    lastClipFromWorld_.reset();
+    last_.reset();
 }
 
 void Renderer::render(const Session& session, Timing timing) {
@@ -84,15 +84,14 @@ void Renderer::begin(const Session& session, Timing timing) {
     view_ = sessionView(session, state.bounds());
     flow_.begin();
     try {
-        frame_ = buildFrame(flow_, session, state, drawn_->geometry_.get(),
-                            lastClipFromWorld_.value_or(view_.clipFromWorld));
+        frame_ = buildFrame(flow_, session, state, drawn_->geometry_.get(), last_ ? &*last_ : nullptr);
         flow_.refuseAbove(session.textureLimit);
         runner_.begin(flow_, timing);
     } catch (...) {
         fail();
         throw;
     }
-    lastClipFromWorld_ = view_.clipFromWorld;
+    last_ = {view_, session.light};
 }
 
 bool Renderer::advance(double milliseconds) {
@@ -120,7 +119,9 @@ std::optional<glm::vec3> Renderer::surfaceAt(glm::ivec2 pixel) const {
     const glm::ivec2 fromBelow(pixel.x, view_.size.y - 1 - pixel.y);
     if (glm::any(glm::lessThan(fromBelow, glm::ivec2(0))) || glm::any(glm::greaterThanEqual(fromBelow, view_.size)))
         return std::nullopt;
-    const float depth = runner_.texture(flow_, frame_->depth).readTexel(fromBelow.x, fromBelow.y);
+    const Texture& depths = runner_.texture(flow_, frame_->depth);
+    const glm::ivec2 texel = fromBelow + (glm::ivec2(depths.extent().width, depths.extent().height) - view_.size) / 2;
+    const float depth = depths.readTexel(texel.x, texel.y);
     if (!(depth > 0)) return std::nullopt;
     const glm::vec2 centre = glm::vec2(fromBelow) + 0.5f;
     return view_.eyeWorld + depth * (view_.rayCorner + centre.x * view_.rayDx + centre.y * view_.rayDy);
@@ -138,6 +139,19 @@ Renderer::Pixels Renderer::read(Image image, int layer, int level) const {
         std::swap_ranges(pixels.values.begin() + low * row, pixels.values.begin() + (low + 1) * row,
                          pixels.values.begin() + high * row);
     return pixels;
+}
+
+Renderer::Pixels Renderer::readPicture(Image image) const {
+    Pixels pixels = read(image);
+    const glm::ivec2 margin = (glm::ivec2(pixels.width, pixels.height) - view_.size) / 2;
+    if (margin == glm::ivec2(0)) return pixels;
+    Pixels picture{view_.size.x, view_.size.y, pixels.channels, {}};
+    const auto row = static_cast<std::ptrdiff_t>(pixels.width) * pixels.channels;
+    for (int y = 0; y < view_.size.y; ++y) {
+        const auto first = pixels.values.begin() + (y + margin.y) * row + margin.x * pixels.channels;
+        picture.values.insert(picture.values.end(), first, first + view_.size.x * pixels.channels);
+    }
+    return picture;
 }
 
 } // namespace penumbra

@@ -79,6 +79,8 @@ public:
         std::vector<float> values;
     };
     Pixels read(Image image, int layer = 0, int level = 0) const;
+    // The part of an image that the picture shows: those of the geometry buffer may have a margin.
+    Pixels readPicture(Image image) const;
 
     // For passes of others than the frame's, under the same watch.
     ProgramLibrary& programs() { return *programs_; }
@@ -103,7 +105,7 @@ private:
     std::optional<Frame> frame_;
     std::shared_ptr<const Texture> picture_;
     View view_; // of the frame
-    std::optional<glm::mat4> lastClipFromWorld_;
+    std::optional<LastFrame> last_;
     bool software_ = false;
 };
 

@@ -16,7 +16,7 @@ void main()
 #ifdef TRUTH
     float counted = subtrahend.y;
 #else
-    float counted = texelFetch(depth, pixel, 0).x > 0.0 ? 1.0 : 0.0;
+    float counted = texelFetch(depth, pixel + (textureSize(depth, 0) - imageSize(error)) / 2, 0).x > 0.0 ? 1.0 : 0.0;
 #endif
     imageStore(error, pixel, vec4(texelFetch(shadow, pixel, 0).x - subtrahend.x, counted, 0.0, 0.0));
 }

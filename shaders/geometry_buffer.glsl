@@ -64,7 +64,7 @@ layout(location = COLOUR) out vec4 colour;
 #ifdef MOTION
 in vec4 lastClip;
 in vec4 clip;
-layout(location = MOTION) out vec2 motion;
+layout(location = MOTION) out vec4 motion;
 #endif
 void main()
 {
@@ -99,7 +99,7 @@ void main()
     colour = vec4(sqrt(shown), own); // in 8 bits as even to the eye as sRGB
 #endif
 #ifdef MOTION
-    motion = (lastClip.xy / lastClip.w - clip.xy / clip.w) * 0.5 * view.size.xy;
+    motion = vec4((lastClip.xy / lastClip.w - clip.xy / clip.w) * 0.5 * view.size.xy, lastClip.w - clip.w, 0.0);
 #endif
 }
 #endif

@@ -23,10 +23,11 @@ const vec3 background = vec3(0.10, 0.11, 0.13);
 void main()
 {
     ivec2 pixel = texelHere().xy; // fetches and stores outside the picture do nothing
-    float d = texelFetch(depth, pixel, 0).x;
-    vec2 centre = vec2(pixel) + 0.5;
+    ivec2 surface = pixel + (textureSize(depth, 0) - imageSize(lit)) / 2; // the geometry buffer may have a margin
+    float d = texelFetch(depth, surface, 0).x;
+    vec2 centre = vec2(surface) + 0.5;
     vec3 positionWorld = view.eyeWorld.xyz + d * (view.rayCorner.xyz + centre.x * view.rayDx.xyz + centre.y * view.rayDy.xyz);
-    vec3 n = mat3(lightFromWorld) * unitFromOctahedral(texelFetch(normal, pixel, 0).zw);
+    vec3 n = mat3(lightFromWorld) * unitFromOctahedral(texelFetch(normal, surface, 0).zw);
     vec3 l = -(lightFromWorld * vec4(positionWorld, 1.0)).xyz;
 
     // Half the light's size keeps the inverse square finite at the light itself.
@@ -38,7 +39,7 @@ void main()
     float psi = texelFetch(shadow, pixel, 0).x;
     // Ambient light is a little stronger from above, so that what lies in full shadow keeps its shape.
     float ambient = colour_ambient.w * (0.75 + 0.25 * dot(n, lightFromWorld[1].xyz));
-    vec4 root_own = texelFetch(colour, pixel, 0);
+    vec4 root_own = texelFetch(colour, surface, 0);
     vec3 base = root_own.rgb * root_own.rgb;
     vec3 light = ambient + colour_ambient.rgb * (irradiance * (1.0 - psi));
     imageStore(lit, pixel, vec4(d > 0.0 ? base * mix(light, vec3(1.0), root_own.a) : background, 1.0));

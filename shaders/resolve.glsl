@@ -9,6 +9,9 @@
 layout(std140, binding = 0) uniform Constants {
     ViewBlock view;
     LightViewBlock lightView;
+#ifdef OWN_CONSTANTS
+    OWN_CONSTANTS
+#endif
 #ifdef TABLE
     vec4 table[TABLE]; // a filter's own
 #endif
@@ -24,6 +27,9 @@ const bool roundLight = ROUND != 0; // a disk, or directional
 // A surface point in the coordinates of the shadow map.
 struct Receiver {
     ivec2 pixel;
+    float eyeDepth;     // [m], 0 without a surface
+    vec3 ray;           // of the pixel, world, to eye depth 1 [m]
+    vec3 normalWorld;   // unit, geometric, towards the viewer
     float known;        // ψ where it is known without a look at the map, else −1
     vec3 positionLight; // [m]
     vec3 normalLight;   // unit, geometric, towards the viewer
@@ -47,14 +53,14 @@ Receiver findReceiver(float normalOffset)
 {
     Receiver r;
     r.pixel = texelHere().xy;
-    float eyeDepth = texelFetch(depth, r.pixel, 0).x;
+    r.eyeDepth = texelFetch(depth, r.pixel, 0).x;
     vec2 centre = vec2(r.pixel) + 0.5;
-    vec3 ray = view.rayCorner.xyz + centre.x * view.rayDx.xyz + centre.y * view.rayDy.xyz;
-    vec3 positionWorld = view.eyeWorld.xyz + eyeDepth * ray;
-    vec3 normalWorld = unitFromOctahedral(texelFetch(normal, r.pixel, 0).xy);
+    r.ray = view.rayCorner.xyz + centre.x * view.rayDx.xyz + centre.y * view.rayDy.xyz;
+    vec3 positionWorld = view.eyeWorld.xyz + r.eyeDepth * r.ray;
+    r.normalWorld = unitFromOctahedral(texelFetch(normal, r.pixel, 0).xy);
 
     r.positionLight = (lightView.lightFromWorld * vec4(positionWorld, 1.0)).xyz;
-    r.normalLight = mat3(lightView.lightFromWorld) * normalWorld;
+    r.normalLight = mat3(lightView.lightFromWorld) * r.normalWorld;
     bool below = lightBelowHorizon(r.positionLight, r.normalLight);
 
     vec2 s = lightView.sample_reference.xy;
@@ -70,7 +76,7 @@ Receiver findReceiver(float normalOffset)
     r.d = behind ? f : -r.positionLight.z;
     r.reference = referenceFromLight(vec3(r.positionLight.xy, -r.d), s, f, directional);
     r.facing = directional ? dot(r.normalLight, vec3(s, 1.0)) : dot(r.normalLight, r.positionLight - vec3(s, 0.0));
-    r.known = eyeDepth <= 0.0 || (behind && !below) ? 0.0 : below ? 1.0 : -1.0;
+    r.known = r.eyeDepth <= 0.0 || (behind && !below) ? 0.0 : below ? 1.0 : -1.0;
     return r;
 }
 

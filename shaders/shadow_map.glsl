@@ -11,6 +11,9 @@ out vec3 fromLight; // [m]
 #elif defined(LINEAR_DEPTH)
 out float z; // linear in the position, so interpolation keeps it exact
 #endif
+#ifdef SIGN_MOVERS
+flat out float side; // −1 for what has moved since the last frame
+#endif
 #ifdef MASKED
 out vec2 uv;
 flat out float leastAlpha;
@@ -28,6 +31,11 @@ void main()
     z = (-dot(lightZ, positionWorld) - lightView.range.x) * lightView.range.z;
 #endif
     gl_Position = lightView.clipFromWorld * positionWorld;
+#ifdef SIGN_MOVERS
+    bool moved = lastPositionModel != positionModel;
+    for (int row = 0; row < 3; ++row) moved = moved || lastWorldFromModel[row] != worldFromModel[row];
+    side = moved ? -1.0 : 1.0;
+#endif
 #ifdef MASKED
     uv = uvModel;
     leastAlpha = drawBaseColour.w;
@@ -44,6 +52,9 @@ uniform sampler2D nearer; // the layer before this one
 #endif
 #ifdef COLOUR_DEPTH
 layout(location = 0) out float depth;
+#endif
+#ifdef SIGN_MOVERS
+flat in float side;
 #endif
 #if defined(RADIAL)
 in vec3 fromLight;
@@ -82,7 +93,9 @@ void main()
 #if defined(RADIAL) || defined(LINEAR_DEPTH)
     gl_FragDepth = stored;
 #endif
-#ifdef COLOUR_DEPTH
+#ifdef SIGN_MOVERS
+    depth = side * max(stored, 1e-6); // zero has no sign
+#elif defined(COLOUR_DEPTH)
     depth = stored;
 #endif
 }

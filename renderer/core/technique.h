@@ -6,6 +6,8 @@
 
 #include "renderer/core/flow.h"
 
+#include <glm/glm.hpp>
+
 #include <memory>
 #include <optional>
 #include <span>
@@ -29,8 +31,10 @@ public:
     virtual ParameterSet& parameters() = 0;
     // With these parameters, in a frame that is drawn at once; nothing: it is not known.
     virtual std::optional<TextureReads> readsPerPixel() const { return std::nullopt; }
+    // How many pixels it wants of the geometry buffer beyond each edge of a picture of that size.
+    virtual glm::ivec2 margin(glm::ivec2 /*pictureSize*/) const { return {0, 0}; }
     // Appends passes and returns ψ(x, y) in [0, 1], the fraction of the light that a pixel's surface does not see:
-    // one R32F image of the view's size named "shadow". Pixels without a surface are 0.
+    // one R32F image of the picture's size named "shadow". Pixels without a surface are 0.
     virtual Image build(Flow& flow, Scope scope, const Inputs& inputs) const = 0;
 };
 

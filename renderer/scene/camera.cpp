@@ -45,4 +45,15 @@ View makeView(const Camera& camera, glm::ivec2 size, float near, float far) {
     return view;
 }
 
+View grown(const View& view, glm::ivec2 margin) {
+    if (margin == glm::ivec2(0)) return view;
+    View larger = view;
+    larger.size = view.size + 2 * margin;
+    const glm::vec2 share = glm::vec2(view.size) / glm::vec2(larger.size);
+    larger.clipFromWorld = glm::scale(glm::mat4(1), glm::vec3(share, 1)) * view.clipFromWorld;
+    larger.rayCorner -= static_cast<float>(margin.x) * view.rayDx + static_cast<float>(margin.y) * view.rayDy;
+    larger.tanHalfFovY /= share.y;
+    return larger;
+}
+
 } // namespace penumbra

@@ -35,4 +35,7 @@ struct View {
 
 View makeView(const Camera& camera, glm::ivec2 size, float near, float far);
 
+// The same picture with so many pixels more on each side: every pixel keeps its ray.
+View grown(const View& view, glm::ivec2 margin);
+
 } // namespace penumbra

@@ -39,13 +39,33 @@ glm::vec2 lightPoint(const AreaLight& light, glm::vec2 u) {
     return halfSize(light) * glm::vec2(p.x, p.y);
 }
 
+namespace {
+
+float belowOne(double value) { return std::min(static_cast<float>(value), 0x1.fffffep-1f); } // rounding reaches 1
+
+} // namespace
+
 glm::vec2 haltonPoint(uint32_t i) {
     const auto inverse = [](uint32_t rest, uint32_t base) {
         double value = 0, share = 1;
         for (; rest > 0; rest /= base) value += (share /= base) * (rest % base);
-        return std::min(static_cast<float>(value), 0x1.fffffep-1f); // rounding must not reach 1
+        return belowOne(value);
     };
     return {inverse(i, 2), inverse(i, 3)};
+}
+
+glm::vec2 r2Point(uint32_t i) {
+    const glm::dvec2 point = glm::fract(static_cast<double>(i) * glm::dvec2(0.7548776662466927, 0.5698402909980532));
+    return {belowOne(point.x), belowOne(point.y)};
+}
+
+glm::vec2 randomPoint(uint32_t i) {
+    const auto uniform = [](uint32_t n) { // a permutation of 32-bit numbers: PCG (O'Neill 2014; Jarzynski, Olano 2020)
+        n = n * 747796405u + 2891336453u;
+        n = ((n >> ((n >> 28) + 4)) ^ n) * 277803737u;
+        return belowOne(static_cast<double>((n >> 22) ^ n) / 4294967296.0);
+    };
+    return {uniform(2 * i), uniform(2 * i + 1)};
 }
 
 } // namespace penumbra

@@ -58,5 +58,9 @@ glm::vec2 lightPoint(const AreaLight& light, glm::vec2 u);
 
 // The i-th point of the Halton sequence of bases 2 and 3 in [0, 1)²; the 0-th is the corner (0, 0).
 glm::vec2 haltonPoint(uint32_t i);
+// The i-th point of the R2 sequence (Roberts 2018), an additive recurrence, in [0, 1)².
+glm::vec2 r2Point(uint32_t i);
+// Independent points of [0, 1)².
+glm::vec2 randomPoint(uint32_t i);
 
 } // namespace penumbra

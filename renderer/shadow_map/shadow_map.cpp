@@ -104,6 +104,8 @@ Fit fitMap(const AreaLight& light, std::span<const Occluder> occluders, const ma
 
 } // namespace
 
+vec2 gridShift(uint32_t i) { return r2Point(i) - 0.5f; }
+
 LightViewBlock lightView(const Inputs& inputs, const ShadowMapDescription& description) {
     const LightSample s = description.sample;
     const int size = description.size;
@@ -170,6 +172,10 @@ ShadowMap drawShadowMap(Flow& flow, Scope scope, const Inputs& inputs, const Sha
     static constexpr Channel channels[] = {{"depth", "z",
                                             "linear depth from the light, (d − near) / (far − near); 1: nothing casts",
                                             Unit::DepthRange, 0, 1}};
+    static constexpr Channel signed_[] = {{"depth", "z",
+                                           "linear depth from the light, (d − near) / (far − near); 1: nothing casts; "
+                                           "negative: what casts has moved since the last frame",
+                                           Unit::DepthRange, -1, 1}};
     static constexpr std::string_view names[mostLayers] = {"shadow-map",   "shadow-map-2", "shadow-map-3",
                                                            "shadow-map-4", "shadow-map-5", "shadow-map-6",
                                                            "shadow-map-7", "shadow-map-8"};
@@ -179,6 +185,7 @@ ShadowMap drawShadowMap(Flow& flow, Scope scope, const Inputs& inputs, const Sha
     const int layer = description.layer;
     ensure(layer >= 0 && layer < mostLayers, "a shadow map layer that there is not");
     ensure(layer == 0 || description.samples == 1, "layers are peeled from maps of one sample");
+    ensure(!description.signMovers || (layer == 0 && description.format == Format::R32F), "a depth that has no sign");
     const LightViewBlock view = lightView(inputs, description);
     const Extent extent{.width = description.size, .height = description.size, .samples = description.samples};
     const std::string_view name = names[layer];
@@ -193,10 +200,11 @@ ShadowMap drawShadowMap(Flow& flow, Scope scope, const Inputs& inputs, const Sha
               .clear = {1, 1, 1, 1}};
     // The rasteriser's depth of an orthographic map is the stored depth already.
     if (view.sample_reference.w == 0) draw.defines.push_back({view.range.w != 0 ? "RADIAL" : "LINEAR_DEPTH"});
+    if (description.signMovers) draw.defines.push_back({"SIGN_MOVERS"});
     PassSpec pass{.stage = Stage::ShadowMap, .name = name, .constants = view};
     if (description.format != Format::Depth32F) {
         draw.defines.push_back({"COLOUR_DEPTH"});
-        pass.writes.push_back({name, description.format, extent, channels});
+        pass.writes.push_back({name, description.format, extent, description.signMovers ? signed_ : channels});
         pass.writes.push_back({zNames[layer], Format::Depth32F, extent, channels});
     } else {
         pass.writes.push_back({name, Format::Depth32F, extent, channels});
@@ -227,12 +235,13 @@ Image resolve(Flow& flow, Scope scope, const Inputs& inputs, const Resolver& res
                   {"ROUND", inputs.light.shape == LightShape::Rectangle ? 0 : 1}}};
     for (const Define& define : resolver.defines) work.defines.push_back(define);
     if (resolver.table > 0) work.defines.push_back({"TABLE", resolver.table});
+    const glm::ivec2 size = resolver.withMargin ? inputs.view.size : inputs.pictureSize();
     PassSpec pass{
         .stage = Stage::Resolve,
         .name = resolver.pass,
         .work = work,
         .reads = {{"depth", inputs.geometryBuffer.depth}, {"normal", inputs.geometryBuffer.normal}},
-        .writes = {{resolver.writes, Format::R32F, {inputs.view.size.x, inputs.view.size.y}, resolver.channels}},
+        .writes = {{resolver.writes, resolver.format, {size.x, size.y}, resolver.channels}},
         .constants = resolver.constants,
         .parameters = &parameters};
     for (const Read& read : reads) pass.reads.push_back(read);

@@ -27,8 +27,12 @@ struct ShadowMapDescription {
     // Moves the grid of texels by at most half a texel: without it all maps of a light have the same grid on the
     // reference plane, and the mean of many keeps the rounding of each.
     glm::vec2 shift{0, 0};
+    bool signMovers = false; // depth is negative where a caster's pose differs from the last frame's; needs R32F
 };
 inline constexpr int mostLayers = 8;
+
+// The shift of the i-th of many maps: even over a texel and unrelated to Halton's points.
+glm::vec2 gridShift(uint32_t i);
 
 // What every technique that reads a shadow map lets its user turn.
 struct ShadowMapParameters : ParameterGroup {
@@ -137,10 +141,12 @@ struct Resolver {
     std::string_view shader;
     Constants constants;
     int table = 0;
-    // What it writes: R32F of the view's size, ψ as "shadow" unless stated otherwise.
+    // What it writes: ψ as "shadow", of the picture's size, unless stated otherwise.
     std::string_view pass = "resolve", writes = "shadow";
     std::span<const Channel> channels = shadowChannels();
     Defines defines = {};
+    Format format = Format::R32F;
+    bool withMargin = false; // as large as the geometry buffer, not as the picture
 };
 // Appends its pass: reads depth, normal and `reads`.
 Image resolve(Flow& flow, Scope scope, const Inputs& inputs, const Resolver& resolver,

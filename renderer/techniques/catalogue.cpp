@@ -11,7 +11,8 @@
     X(hard)                                                                                                            \
     X(pcf)                                                                                                             \
     X(pcss)                                                                                                            \
-    X(lightSampling)
+    X(lightSampling)                                                                                                   \
+    X(temporal)
 
 namespace penumbra {
 

@@ -72,7 +72,7 @@ public:
         flow.repeat(std::min(perFrame, samples - done), [&](int i) {
             ShadowMapDescription description =
                 parameters_.map.describe(lightPoint(inputs.light, samplePoint(inputs.seed, done + i)));
-            description.shift = gridShift(done + i);
+            description.shift = gridShift(static_cast<uint32_t>(done + i));
             const ShadowMap map = drawShadowMap(flow, scope, inputs, description);
             counted = count(flow, scope, inputs, map, counted);
         });
@@ -95,12 +95,6 @@ private:
     // Halton's i-th point after the corner; another seed shifts them all.
     static glm::vec2 samplePoint(uint32_t seed, int i) {
         return glm::fract(haltonPoint(static_cast<uint32_t>(i) + 1) + haltonPoint(seed));
-    }
-
-    // Of the texels, even over them and unrelated to Halton's points (the R2 sequence: Roberts 2018).
-    static glm::vec2 gridShift(int i) {
-        return glm::vec2(glm::fract(static_cast<double>(i) * glm::dvec2(0.7548776662466927, 0.5698402909980532))) -
-               0.5f;
     }
 
     Image count(Flow& flow, Scope scope, const Inputs& inputs, const ShadowMap& map,

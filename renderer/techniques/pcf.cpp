@@ -8,6 +8,7 @@
 // the kernel's, which is the same sum as n² hardware 2x2 comparisons. Poisson: as many as there are taps, four times that
 // with bilinear comparison.
 #include "renderer/core/technique.h"
+#include "renderer/shadow_map/poisson_disk.h"
 #include "renderer/shadow_map/shadow_map.h"
 
 #include <cmath>
@@ -109,28 +110,6 @@ void tabulateWeights(const Parameters& p, PcfConstants& constants) {
     };
     for (int i = 0; i < n; ++i) sum += weight(i);
     for (int i = 0; i < n; ++i) entry(constants, i) = weight(i) / sum;
-}
-
-// n points of the unit disk by best candidate (Mitchell 1991): each is the farthest of many from those before it, and
-// from the disk's copies around it nothing is asked. The same points for the same n.
-std::span<const vec2> poissonDisk(int n) {
-    static std::array<std::vector<vec2>, mostTaps + 1> sets;
-    std::vector<vec2>& set = sets[static_cast<size_t>(n)];
-    std::mt19937 random(12345);
-    const auto uniform = [&] { return 2 * static_cast<float>(random()) / 4294967296.0f - 1; };
-    while (set.size() < static_cast<size_t>(n)) {
-        vec2 best{};
-        float farthest = -1;
-        for (int candidate = 0; candidate < 64 * n; ++candidate) {
-            const vec2 p{uniform(), uniform()};
-            if (glm::dot(p, p) > 1) continue;
-            float nearest = 8;
-            for (const vec2 q : set) nearest = std::min(nearest, glm::distance(p, q));
-            if (nearest > farthest) farthest = nearest, best = p;
-        }
-        set.push_back(best);
-    }
-    return set;
 }
 
 class Pcf final : public Technique {

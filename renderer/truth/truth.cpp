@@ -83,12 +83,12 @@ TruthInput readTruthInput(const Renderer& renderer, const Session& session) {
         return *found;
     };
     TruthInput input{.view = sessionView(session, renderer.state().bounds()),
-                     .depth = renderer.read(image("scene.depth")).values,
+                     .depth = renderer.readPicture(image("scene.depth")).values,
                      .scene = session.scene,
                      .pose = renderer.state().pose(),
                      .light = session.light,
                      .seed = session.seed};
-    const Renderer::Pixels normals = renderer.read(image("scene.normal"));
+    const Renderer::Pixels normals = renderer.readPicture(image("scene.normal"));
     const size_t pixels = input.depth.size();
     ensure(normals.values.size() == 4 * pixels, "depth and normals are of different sizes");
     input.normalWorld.reserve(pixels);

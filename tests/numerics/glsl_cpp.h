@@ -65,6 +65,7 @@ using vec4 = glm::vec<4, float>;
 #include "shaders/lib/posing.glsl"
 #include "shaders/lib/sampling.glsl"
 #include "shaders/lib/srgb.glsl"
+#include "shaders/lib/temporal.glsl"
 #include "shaders/lib/colour_map.glsl"
 } // namespace f32
 
@@ -79,6 +80,7 @@ using vec4 = glm::vec<4, double>;
 #include "shaders/lib/posing.glsl"
 #include "shaders/lib/sampling.glsl"
 #include "shaders/lib/srgb.glsl"
+#include "shaders/lib/temporal.glsl"
 #include "shaders/lib/colour_map.glsl"
 } // namespace f64
 #undef float

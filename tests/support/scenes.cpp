@@ -182,7 +182,7 @@ ShadowImage draw(const Session& session) {
     r.reset();
     r.render(session);
     const Image depth = *r.flow().find("scene.depth");
-    return {r.read(r.shadow()), r.read(depth), sessionView(session, r.state().bounds())};
+    return {r.read(r.shadow()), r.readPicture(depth), sessionView(session, r.state().bounds())};
 }
 
 } // namespace penumbra::test

@@ -1,0 +1,537 @@
+// SPDX-License-Identifier: MIT
+// Soft shadows by temporal coherence (Scherzer, Schwärzler, Mattausch, Wimmer, Real-Time Soft Shadows Using Temporal
+// Coherence, ISVC 2009; Schwärzler's thesis, TU Wien 2009, chapter 5 and listing). One shadow map a frame, each from
+// another point of the light.
+//
+//   1. shadow map from the next point. The sequence starts over with the history: when the picture's size, the pixel
+//      format, a parameter that the history depends on, or the number of things in the scene changes, or on a reset
+//   2. resolve: each pixel finds its surface in the last frame's shadow buffer; the same surface keeps ρ and n and adds
+//      its test (eq. 5), a new one starts with an estimate
+//   3. filter: what is shown is ψ̂ where its standard error (eq. 3) is small, else a mean of neighbours
+//
+// The buffer holds ρ_n, n, eye depth and mean blocker depth, twice (last frame's and this one's): 32 bytes a pixel in 32
+// bits, 16 in 16. The picture has a margin in it, so that what comes into view has a history.
+#include "renderer/core/hash.h"
+#include "renderer/core/technique.h"
+#include "renderer/shadow_map/poisson_disk.h"
+#include "renderer/shadow_map/shadow_map.h"
+
+#include <algorithm>
+
+namespace penumbra {
+namespace {
+
+constexpr int mostTaps = 64;
+constexpr int32_t mostHalfs = 2048, mostFloats = 1 << 24; // whole numbers that count without rounding
+
+enum class Sequence { Halton, R2, Random };
+enum class Start { Pcss, Search, Hard };
+enum class Storage { Half, Float };
+enum class Lookup { Nearest, Bilinear };
+enum class DepthTest { Absolute, Relative };
+enum class Moving { Ignore, Disocclusion, Decrement };
+enum class Neighbourhood { Off, Box, Poisson };
+enum class Footprint { Screen, Surface };
+enum class Mixing { Threshold, Blend };
+enum class ErrorEstimate { Equation3, Cautious };
+constexpr std::string_view sequenceNames[] = {"halton", "r2", "random"};
+constexpr std::string_view startNames[] = {"pcss", "search", "hard"};
+constexpr std::string_view storageNames[] = {"16f", "32f"};
+constexpr std::string_view lookupNames[] = {"nearest", "bilinear"};
+constexpr std::string_view depthTestNames[] = {"absolute", "relative"};
+constexpr std::string_view movingNames[] = {"ignore", "disocclusion", "decrement"};
+constexpr std::string_view neighbourhoodNames[] = {"off", "box", "poisson"};
+constexpr std::string_view footprintNames[] = {"screen", "surface"};
+constexpr std::string_view mixingNames[] = {"threshold", "blend"};
+constexpr std::string_view errorNames[] = {"equation-3", "cautious"};
+
+template <class E> bool is(const ParameterSet& set, std::string_view id, E value) {
+    return set.at(id).value() == static_cast<double>(value);
+}
+bool filters(const ParameterSet& set) { return !is(set, "neighbourhood", Neighbourhood::Off); }
+constexpr std::string_view filterIsOff = "the neighbourhood filter is off";
+
+constexpr std::string_view filterGroup = "Neighbourhood filter";
+
+// How ψ̂ is shown. Nothing of it is kept, so the history goes on when it is turned.
+struct FilterParameters : ParameterGroup {
+    explicit FilterParameters(ParameterSet& s) : ParameterGroup(s, filterGroup) {}
+    Choice<Neighbourhood> neighbourhood{
+        set,
+        {.id = "neighbourhood",
+         .label = "Filter shape",
+         .value = double(Neighbourhood::Poisson),
+         .programConstant = true,
+         .source = "box: Scherzer 2009, 3.3; Poisson disk: 4",
+         .help = "Which neighbours are asked where samples are few. Off shows the samples alone: the truth in the end, "
+                 "noise and steps at first.",
+         .choices = neighbourhoodNames}};
+    Integer taps{set,
+                 {.id = "taps",
+                  .label = "Neighbours",
+                  .value = 16,
+                  .min = 1,
+                  .max = mostTaps,
+                  .unit = Unit::Samples,
+                  .source = "Scherzer 2009, 4 (16)",
+                  .help = "Texels of the shadow buffer that are averaged. Paid only where the error is large.",
+                  .active = filters,
+                  .inactiveReason = filterIsOff}};
+    Real radiusScale{set,
+                     {.id = "radius-scale",
+                      .label = "Radius scale",
+                      .value = 1,
+                      .min = 0,
+                      .max = 4,
+                      .source = "Scherzer 2009 eq. 6; thesis 5.6, 5.9 to 5.12",
+                      .help = "Radius of the filter in half widths of the penumbra. Larger is smoother and makes young "
+                              "penumbrae too wide.",
+                      .active = filters,
+                      .inactiveReason = filterIsOff}};
+    Choice<Footprint> footprint{
+        set,
+        {.id = "footprint",
+         .value = double(Footprint::Surface),
+         .programConstant = true,
+         .source = "screen: Scherzer 2009 eq. 6, thesis 5.9 and 5.10; surface: ours",
+         .help = "Screen is a circle of pixels, whatever the surface's tilt. Surface is where the light's shape falls "
+                 "on it, and neighbours must lie on its plane.",
+         .choices = footprintNames,
+         .active = filters,
+         .inactiveReason = filterIsOff}};
+    Real neighbourEpsilon{set,
+                          {.id = "neighbour-epsilon",
+                           .label = "Neighbour depth",
+                           .symbol = "ε_n",
+                           .value = 0.015,
+                           .min = 0,
+                           .max = 1,
+                           .scale = Scale::Logarithmic,
+                           .smallest = 1e-5,
+                           .source = "thesis, listing (15 · 0.001)",
+                           .help = "Difference of depth, as a share of it, up to which a neighbour is of the same "
+                                   "surface. Too large blurs over edges, too small leaves slanting surfaces noisy.",
+                           .active = filters,
+                           .inactiveReason = filterIsOff}};
+    Choice<Mixing> mixing{set,
+                          {.id = "mixing",
+                           .value = double(Mixing::Blend),
+                           .programConstant = true,
+                           .source = "threshold: Scherzer 2009, 3.3; blend: thesis 5.13, 5.14",
+                           .help = "Whether the filter gives way at one error or between two.",
+                           .choices = mixingNames,
+                           .active = filters,
+                           .inactiveReason = filterIsOff}};
+    Real threshold{
+        set,
+        {.id = "threshold",
+         .label = "Error threshold",
+         .symbol = "t",
+         .value = 0.02,
+         .min = 0,
+         .max = 1,
+         .source = "Scherzer 2009, 4 (1/50)",
+         .help = "Standard error above which the filter is shown. 1/50 filters the middle of a penumbra for "
+                 "627 frames.",
+         .active = [](const ParameterSet& set) { return filters(set) && is(set, "mixing", Mixing::Threshold); },
+         .inactiveReason = "only mixing by threshold has it"}};
+    static bool blends(const ParameterSet& set) { return filters(set) && is(set, "mixing", Mixing::Blend); }
+    Real sMin{set,
+              {.id = "s-min",
+               .label = "Least error",
+               .symbol = "s_min",
+               .value = 0.02,
+               .min = 0,
+               .max = 1,
+               .source = "thesis 5.13 (1/32; listing 1/50)",
+               .help = "Standard error below which the samples alone are shown.",
+               .active = blends,
+               .inactiveReason = "only mixing by blend has it"}};
+    Real sMax{set,
+              {.id = "s-max",
+               .label = "Most error",
+               .symbol = "s_max",
+               .value = 0.2,
+               .min = 0,
+               .max = 1,
+               .source = "thesis 5.13 (1/8; listing 1/5)",
+               .help = "Standard error above which the filter alone is shown; never below s_min.",
+               .active = blends,
+               .inactiveReason = "only mixing by blend has it"}};
+    Integer fewSamples{set,
+                       {.id = "few-samples",
+                        .label = "Few samples",
+                        .value = 16,
+                        .min = 0,
+                        .max = 256,
+                        .unit = Unit::Samples,
+                        .source = "thesis 5.2.4 (16)",
+                        .help = "With fewer than these the error itself is not to be trusted, and the filter is shown.",
+                        .active = filters,
+                        .inactiveReason = filterIsOff}};
+    Choice<ErrorEstimate> error{set,
+                                {.id = "error",
+                                 .label = "Error estimate",
+                                 .value = double(ErrorEstimate::Cautious),
+                                 .programConstant = true,
+                                 .source = "Scherzer 2009 eq. 3; cautious: Laplace's rule",
+                                 .help = "Equation 3 is 0 where the first samples agree by chance. The cautious one "
+                                         "adds a lit and a shadowed sample first.",
+                                 .choices = errorNames,
+                                 .active = filters,
+                                 .inactiveReason = filterIsOff}};
+    Flag turn{set,
+              {.id = "turn",
+               .label = "Turn per pixel",
+               .value = 1,
+               .source = "Jimenez 2014 (noise)",
+               .help = "Other neighbours in every pixel: bands become noise.",
+               .active = filters,
+               .inactiveReason = filterIsOff}};
+    End end{set};
+};
+
+struct Parameters : ParameterSet {
+    Choice<Sequence> sequence{*this,
+                              {.id = "sequence",
+                               .value = double(Sequence::Halton),
+                               .source = "Scherzer 2009, 4; R2: Roberts 2018",
+                               .help = "Order of the light's points. Even ones converge about as n^-3/4, random ones "
+                                       "as n^-1/2.",
+                               .choices = sequenceNames}};
+    Choice<Start> start{*this,
+                        {.id = "start",
+                         .value = double(Start::Pcss),
+                         .programConstant = true,
+                         .source = "pcss: Scherzer 2009, 3.3; search: thesis 5.2.3; hard: eq. 5 alone",
+                         .help = "What a surface without a history begins with: percentage-closer soft shadows as "
+                                 "from the light's centre, or one hard test with or without a search for blockers, "
+                                 "which the filter needs.",
+                         .choices = startNames}};
+    static bool searches(const ParameterSet& set) { return !is(set, "start", Start::Hard); }
+    static bool estimates(const ParameterSet& set) { return is(set, "start", Start::Pcss); }
+    Integer startWeight{*this,
+                        {.id = "start-weight",
+                         .label = "Start's weight",
+                         .symbol = "n_0",
+                         .value = 4,
+                         .min = 1,
+                         .max = mostTaps,
+                         .unit = Unit::Samples,
+                         .scale = Scale::Logarithmic,
+                         .source = "Scherzer 2009, 3.3 (1; figure 3: 4)",
+                         .help = "How many samples the first estimate counts for. More is calmer at first, and leaves "
+                                 "more of the estimate's error behind.",
+                         .active = estimates,
+                         .inactiveReason = "only a start by pcss has a weight"}};
+    Integer searchTaps{*this,
+                       {.id = "search-taps",
+                        .label = "Search taps",
+                        .symbol = "N_b",
+                        .value = 16,
+                        .min = 1,
+                        .max = mostTaps,
+                        .unit = Unit::Samples,
+                        .source = "Scherzer 2009, 4 (16)",
+                        .help = "Texels looked at for blockers where there is no history.",
+                        .active = searches,
+                        .inactiveReason = "a hard start does not search"}};
+    Integer filterTaps{*this,
+                       {.id = "filter-taps",
+                        .label = "Filter taps",
+                        .symbol = "N_f",
+                        .value = 16,
+                        .min = 1,
+                        .max = mostTaps,
+                        .unit = Unit::Samples,
+                        .source = "Scherzer 2009, 4 (16)",
+                        .help = "Comparisons averaged over the penumbra where there is no history.",
+                        .active = estimates,
+                        .inactiveReason = "only a start by pcss compares"}};
+    Flag rotate{*this,
+                {.id = "rotate",
+                 .label = "Shift per pixel",
+                 .value = 1,
+                 .source = "Cranley and Patterson 1976; Jimenez 2014 (noise)",
+                 .help = "Other taps of search and filter in every pixel: bands become noise.",
+                 .active = searches,
+                 .inactiveReason = "a hard start has no taps"}};
+    Integer blockerWeight{*this,
+                          {.id = "blocker-weight",
+                           .label = "Blocker weight",
+                           .symbol = "k",
+                           .value = 16,
+                           .min = 0,
+                           .max = 256,
+                           .unit = Unit::Samples,
+                           .source = "Scherzer 2009 eq. 7; thesis 5.7, 5.8",
+                           .help = "How many depths the first blocker depth counts for. It sets the filter's width.",
+                           .active = filters,
+                           .inactiveReason = filterIsOff}};
+    Choice<Storage> storage{*this,
+                            {.id = "format",
+                             .label = "Buffer format",
+                             .value = double(Storage::Float),
+                             .source = "16f: Scherzer 2009, 4; 32f: thesis 5.3",
+                             .help = "Floats of the shadow buffer. Halfs take half the memory, stop counting at 2048 "
+                                     "and know a depth to 1/2000 of it.",
+                             .choices = storageNames}};
+    Choice<Lookup> lookup{*this,
+                          {.id = "lookup",
+                           .label = "History lookup",
+                           .value = double(Lookup::Bilinear),
+                           .programConstant = true,
+                           .source = "bilinear: thesis, listing; here each texel has its own depth test",
+                           .help = "Nearest is sharp, but slips when the picture moves by parts of a pixel.",
+                           .choices = lookupNames}};
+    Choice<DepthTest> depthTest{*this,
+                                {.id = "depth-test",
+                                 .value = double(DepthTest::Relative),
+                                 .programConstant = true,
+                                 .source = "absolute: Scherzer 2009 eq. 4; relative: thesis 5.18",
+                                 .help = "What tells that a pixel shows another surface than in the last frame.",
+                                 .choices = depthTestNames}};
+    Real epsilonMetres{*this,
+                       {.id = "epsilon-metres",
+                        .label = "Depth difference",
+                        .symbol = "ε",
+                        .value = 0.02,
+                        .min = 0,
+                        .max = 10,
+                        .unit = Unit::Metres,
+                        .scale = Scale::Logarithmic,
+                        .smallest = 1e-5,
+                        .source = "Scherzer 2009 eq. 4",
+                        .help = "Up to which it is the same surface. Too small loses histories to rounding, too large "
+                                "drags shadows along.",
+                        .active = [](const ParameterSet& set) { return is(set, "depth-test", DepthTest::Absolute); },
+                        .inactiveReason = "only the absolute depth test has it"}};
+    Real epsilon{*this,
+                 {.id = "epsilon",
+                  .label = "Depth difference",
+                  .symbol = "ε",
+                  .min = 0,
+                  .max = 1,
+                  .scale = Scale::Logarithmic,
+                  .smallest = 1e-5,
+                  .source = "thesis 5.18 (listing 0.001)",
+                  .help = "Share of the depth up to which it is the same surface. Too small loses histories to "
+                          "rounding, too large drags shadows along.",
+                  .defaultFrom = [](const ParameterSet& set) { return is(set, "format", Storage::Half) ? 4e-3 : 1e-3; },
+                  .active = [](const ParameterSet& set) { return is(set, "depth-test", DepthTest::Relative); },
+                  .inactiveReason = "only the relative depth test has it"}};
+    Integer mostSamples{*this,
+                        {.id = "most-samples",
+                         .label = "Most samples",
+                         .symbol = "N",
+                         .value = mostFloats,
+                         .min = 1,
+                         .max = mostFloats,
+                         .unit = Unit::Samples,
+                         .scale = Scale::Logarithmic,
+                         .source = "ours",
+                         .help = "Where counting stops and the mean stays as it is. Halfs stop at 2048."}};
+    Choice<Moving> moving{*this,
+                          {.id = "moving",
+                           .label = "Moving casters",
+                           .value = double(Moving::Disocclusion),
+                           .programConstant = true,
+                           .source = "disocclusion: Scherzer 2009, 3.4; decrement: thesis 5.2.5",
+                           .help = "What becomes of a history under the shadow of something that moves. Disocclusion "
+                                   "starts anew; decrement also takes samples away after the shadow has left.",
+                           .choices = movingNames}};
+    static bool decrements(const ParameterSet& set) { return is(set, "moving", Moving::Decrement); }
+    Integer decrement{*this,
+                      {.id = "decrement",
+                       .symbol = "Δ",
+                       .value = 2,
+                       .min = 1,
+                       .max = mostTaps,
+                       .unit = Unit::Samples,
+                       .source = "thesis 5.16",
+                       .help = "Samples taken away a frame where a moving shadow has been; one is added, too.",
+                       .active = decrements,
+                       .inactiveReason = "only the rule by decrement has it"}};
+    Integer dropAbove{*this,
+                      {.id = "drop-above",
+                       .label = "Drop above",
+                       .value = 6,
+                       .min = 0,
+                       .max = 256,
+                       .unit = Unit::Samples,
+                       .source = "thesis, listing (6)",
+                       .help = "With more samples than these only Δ are left at once.",
+                       .active = decrements,
+                       .inactiveReason = "only the rule by decrement has it"}};
+    Integer lightMemory{*this,
+                        {.id = "light-memory",
+                         .label = "Light memory",
+                         .value = 8,
+                         .min = 0,
+                         .max = 256,
+                         .unit = Unit::Samples,
+                         .source = "Scherzer 2009, 5 and thesis 5.4.1 (future work)",
+                         .help = "Samples that are left of a history when the light moves or changes its size. Few "
+                                 "follow at once, many trail behind; 0 starts anew."}};
+    Real overscan{*this,
+                  {.id = "overscan",
+                   .value = 5,
+                   .min = 0,
+                   .max = 50,
+                   .unit = Unit::Percent,
+                   .source = "Scherzer 2009, 4; thesis 5.3 (5)",
+                   .help = "How much larger than the picture the shadow buffer is, so that what comes into view has a "
+                           "history."}};
+    FilterParameters filter{*this};
+    ShadowMapParameters map{*this};
+    ReceiverPlane receiverPlane{*this};
+    BiasParameters bias{*this, {.slope = 0.05, .normalOffset = 0.5}};
+};
+
+struct HistoryConstants {
+    ResolveConstants resolve;
+    ViewBlock lastView;
+    vec4 keep; // x = most samples that a history keeps in this frame, y = most that one may have
+};
+
+struct FilterConstants {
+    ResolveConstants resolve;
+    vec4 taps[mostTaps / 2]; // of the unit disk, two to a vector
+};
+
+constexpr Channel bufferChannels[] = {
+    {"rho", "ρ", "sum of the hard shadow tests", Unit::Samples},
+    {"n", "n", "number of hard shadow tests", Unit::Samples},
+    {"depth", "d", "distance along the view axis; negative: in the shadow of something that moved; 0: no surface",
+     Unit::Metres},
+    {"blocker", "d_b", "mean distance of what blocks, along the light's axis; 0: nothing does", Unit::Metres}};
+
+class Temporal final : public Technique {
+public:
+    ParameterSet& parameters() override { return parameters_; }
+
+    glm::ivec2 margin(glm::ivec2 pictureSize) const override {
+        return glm::ivec2(glm::round(glm::vec2(pictureSize) * (parameters_.overscan / 200)));
+    }
+
+    Image build(Flow& flow, Scope scope, const Inputs& inputs) const override {
+        const bool half = parameters_.storage == Storage::Half;
+        const ImageSpec buffer{"shadow-buffer", half ? Format::RGBA16F : Format::RGBA32F,
+                               Extent{inputs.view.size.x, inputs.view.size.y}, bufferChannels};
+        const PastImage past = flow.past(scope, buffer, historyKey(inputs));
+        const int32_t most = std::min<int32_t>(parameters_.mostSamples, half ? mostHalfs : mostFloats);
+        if (past.age() >= most + int32_t(parameters_.startWeight) && !moves(inputs)) flow.finish(past);
+
+        const ShadowMap map = drawShadowMap(flow, scope, inputs, describeMap(inputs, past.age()));
+        const Image history = addSample(flow, scope, inputs, map, past, buffer, most);
+        return show(flow, scope, inputs, map.view, history);
+    }
+
+private:
+    static bool moves(const Inputs& inputs) { return inputs.geometryBuffer.motion.has_value(); }
+    static bool lightChanged(const Inputs& inputs) {
+        if (!inputs.last) return false;
+        const AreaLight &now = inputs.light, &before = inputs.last->light;
+        return now.position != before.position || now.target != before.target || now.size != before.size;
+    }
+    // A light without a size needs no estimate of what its size does.
+    bool estimates(const Inputs& inputs) const {
+        return parameters_.start == Start::Pcss && halfSize(inputs.light) != vec2(0);
+    }
+
+    // The first map is from the light's centre where it serves an estimate.
+    ShadowMapDescription describeMap(const Inputs& inputs, int age) const {
+        const auto i = static_cast<uint32_t>(age);
+        const bool central = age == 0 && estimates(inputs);
+        const uint32_t point = estimates(inputs) ? i : i + 1;
+        ShadowMapDescription description =
+            parameters_.map.describe(central ? lightCentre : lightPoint(inputs.light, samplePoint(inputs.seed, point)));
+        if (!central && halfSize(inputs.light) != vec2(0)) description.shift = gridShift(i);
+        description.signMovers = moves(inputs) && parameters_.moving != Moving::Ignore;
+        if (description.signMovers) description.format = Format::R32F;
+        return description;
+    }
+
+    // Another seed shifts them all.
+    vec2 samplePoint(uint32_t seed, uint32_t i) const {
+        const auto point = [&](uint32_t k) {
+            return parameters_.sequence == Sequence::Halton ? haltonPoint(k)
+                   : parameters_.sequence == Sequence::R2   ? r2Point(k)
+                                                            : randomPoint(k);
+        };
+        return glm::fract(point(i) + haltonPoint(seed));
+    }
+
+    Image addSample(Flow& flow, Scope scope, const Inputs& inputs, const ShadowMap& map, const PastImage& past,
+                    const ImageSpec& buffer, int32_t most) const {
+        const View lastView = inputs.last ? grown(inputs.last->view, inputs.margin) : inputs.view;
+        const float kept = lightChanged(inputs) ? float(parameters_.lightMemory) : float(mostFloats);
+        Resolver resolver{.shader = "techniques/temporal.glsl",
+                          .constants = HistoryConstants{resolveConstants(inputs, map.view), viewBlock(lastView),
+                                                        vec4(kept, most, 0, 0)},
+                          .writes = buffer.name,
+                          .channels = buffer.channels,
+                          .format = buffer.format,
+                          .withMargin = true};
+        if (!moves(inputs))
+            return resolve(flow, scope, inputs, resolver, {{"shadowMap", map.depth}, {"history", past}}, parameters_);
+        resolver.defines.push_back({"MOTION"});
+        return resolve(
+            flow, scope, inputs, resolver,
+            {{"shadowMap", map.depth}, {"history", past}, {"motion", *inputs.geometryBuffer.motion}}, parameters_);
+    }
+
+    Image show(Flow& flow, Scope scope, const Inputs& inputs, const LightViewBlock& light, Image history) const {
+        FilterConstants constants{resolveConstants(inputs, light), {}};
+        if (parameters_.filter.neighbourhood == Neighbourhood::Poisson) {
+            int i = 0;
+            for (const vec2 p : poissonDisk(parameters_.filter.taps)) {
+                vec4& pair = constants.taps[i / 2];
+                (i % 2 ? pair.z : pair.x) = p.x;
+                (i % 2 ? pair.w : pair.y) = p.y;
+                ++i;
+            }
+        }
+        return resolve(flow, scope, inputs,
+                       {.shader = "techniques/temporal_filter.glsl",
+                        .constants = constants,
+                        .table = mostTaps / 2,
+                        .pass = "filter"},
+                       {{"shadowBuffer", history}}, parameters_);
+    }
+
+    // Of all that makes a history worthless. The light may move and things may, within the rules for them.
+    uint64_t historyKey(const Inputs& inputs) const {
+        Hash hash;
+        hash.add(inputs.light.shape);
+        hash.add(static_cast<uint64_t>(inputs.occluders.size()));
+        hash.add(inputs.seed);
+        for (const Parameter* parameter : parameters_.all())
+            if (parameter->group() != filterGroup) hash.add(parameter->bits());
+        return hash.value();
+    }
+
+    Parameters parameters_;
+};
+
+} // namespace
+
+extern const Card temporalCard;
+const Card temporalCard{
+    .id = "temporal",
+    .title = "Soft shadows by temporal coherence",
+    .authors = "Scherzer, Schwärzler, Mattausch, Wimmer",
+    .year = 2009,
+    .venue = "ISVC",
+    .idea = "Draw one shadow map a frame, each from another point of the light, and keep for every surface on screen "
+            "the mean of its hard shadow tests. Where there are few of them, estimate by percentage-closer soft "
+            "shadows and filter over the neighbours.",
+    .assumes = "Most of what is seen was seen in the last frame, and what casts on it stood still.",
+    .fails = "Shadows of moving things are estimates and may flicker or trail. A moving light never converges. What "
+             "comes into view begins anew.",
+    .litTolerance = 1e-4,
+    .lidTolerance = 1e-4,
+    .make = [] { return std::unique_ptr<Technique>(new Temporal); },
+};
+
+} // namespace penumbra

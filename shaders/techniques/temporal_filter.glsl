@@ -1,0 +1,108 @@
+// SPDX-License-Identifier: MIT
+// What is shown of the shadow buffer: ψ̂ where its error is small, else a mean over the neighbours that lie on the same
+// surface, as wide as the penumbra. Stores nothing that a later frame reads. See renderer/techniques/temporal.cpp.
+//
+// Texture reads: 1 of the buffer and the normal; where it filters, one a tap more.
+#include "resolve.glsl"
+#include "lib/temporal.glsl"
+#include "lib/sampling.glsl"
+
+uniform sampler2D shadowBuffer;
+
+vec2 entry(int i)
+{
+    vec4 pair = table[i >> 1];
+    return (i & 1) == 0 ? pair.xy : pair.zw;
+}
+
+vec3 rayTo(vec2 place) { return view.rayCorner.xyz + place.x * view.rayDx.xyz + place.y * view.rayDy.xyz; }
+
+// From a displacement of the point at `depth` along `ray` [m] to one on the screen [pixels].
+vec2 pixelsOf(vec3 across, vec3 ray, float depth)
+{
+    vec3 dx = view.rayDx.xyz;
+    vec3 dy = view.rayDy.xyz;
+    float perPixel2 = dot(dx, dx); // pixels are square
+    vec3 forward = normalize(cross(dx, dy)) * -1.0;
+    vec3 flat_ = across - dot(across, forward) * ray;
+    return vec2(dot(flat_, dx), dot(flat_, dy)) / (perPixel2 * depth);
+}
+
+void main()
+{
+    ivec2 pixel = texelHere().xy;
+    ivec2 size = textureSize(shadowBuffer, 0);
+    ivec2 margin = (size - imageSize(shadow)) / 2;
+    vec4 here = texelFetch(shadowBuffer, pixel + margin, 0);
+    vec3 n = unitFromOctahedral(texelFetch(normal, pixel + margin, 0).xy);
+    History h = History(here.x, here.y);
+    float eyeDepth = abs(here.z);
+    vec2 centre = vec2(pixel + margin) + 0.5;
+    vec3 ray = rayTo(centre);
+
+#if ERROR == ERROR_CAUTIOUS
+    float error = cautiousError(h);
+#else
+    float error = standardError(h);
+#endif
+#if MIXING == MIXING_THRESHOLD
+    float sampled = sampledShare(error, threshold, threshold);
+#else
+    float sampled = sampledShare(error, sMin, max(sMin, sMax));
+#endif
+    sampled = h.n < float(fewSamples) ? 0.0 : sampled;
+
+    // Half the penumbra's width on a plane parallel to the light: r (d_r − d_b) / d_b, directional r (d_r − d_b).
+    vec3 positionLight = (lightView.lightFromWorld * vec4(view.eyeWorld.xyz + eyeDepth * ray, 1.0)).xyz;
+    float d_r = directional ? -positionLight.z : max(-positionLight.z, 0.0);
+    float gap = max(d_r - here.w, 0.0);
+    vec2 halfWidth = radiusScale * lightView.light.xy * (directional ? gap : gap / max(here.w, 1e-6));
+    mat3 worldFromLight = transpose(mat3(lightView.lightFromWorld));
+#if FOOTPRINT == FOOTPRINT_SURFACE
+    vec3 towards = worldFromLight * normalize(directional ? vec3(0.0, 0.0, 1.0) : -positionLight);
+    vec2 axisX = pixelsOf(alongSurface(worldFromLight[0] * halfWidth.x, towards, n), ray, max(eyeDepth, 1e-6));
+    vec2 axisY = pixelsOf(alongSurface(worldFromLight[1] * halfWidth.y, towards, n), ray, max(eyeDepth, 1e-6));
+#else
+    // Equation 6, and 5.6 with 5.9 and 5.10: a circle on the screen.
+    float radius = halfWidth.x / (length(view.rayDx.xyz) * max(eyeDepth, 1e-6));
+    vec2 axisX = vec2(radius, 0.0);
+    vec2 axisY = vec2(0.0, radius);
+#endif
+    // Not wider than a quarter of the picture.
+    float longest = max(max(length(axisX), length(axisY)), 1e-6);
+    float shrink = min(1.0, 0.25 * float(size.y) / longest);
+    axisX *= shrink;
+    axisY *= shrink;
+
+    bool filters = eyeDepth > 0.0 && sampled < 1.0 && here.w != 0.0 && longest > 0.5;
+    int count = NEIGHBOURHOOD != NEIGHBOURHOOD_OFF && filters ? taps : 0;
+    float angle = turn != 0 ? 6.2831853 * gradientNoise(vec2(pixel)) : 0.0;
+    vec2 spin = vec2(cos(angle), sin(angle));
+    History sum = h;
+#if NEIGHBOURHOOD == NEIGHBOURHOOD_BOX
+    float share = 1.0 / float(taps);
+    vec2 state = turn != 0 ? pixelShift(vec2(pixel)) : vec2(0.0);
+#endif
+    for (int i = 0; i < count; ++i) {
+#if NEIGHBOURHOOD == NEIGHBOURHOOD_BOX
+        state = latticeNext(state, share);
+        vec2 o = 2.0 * state - 1.0;
+#else
+        vec2 o = entry(i);
+        o = vec2(spin.x * o.x - spin.y * o.y, spin.y * o.x + spin.x * o.y);
+#endif
+        vec2 place = floor(centre + o.x * axisX + o.y * axisY);
+        bool inside = all(greaterThanEqual(place, vec2(0.0))) && all(lessThan(place, vec2(size)));
+        vec4 texel = texelFetch(shadowBuffer, clamp(ivec2(place), ivec2(0), size - 1), 0);
+#if FOOTPRINT == FOOTPRINT_SURFACE
+        float expected = depthOnPlane(eyeDepth, n, ray, rayTo(place + 0.5));
+#else
+        float expected = eyeDepth;
+#endif
+        bool counts = inside && sameSurface(expected, abs(texel.z), neighbourEpsilon, true) && sound(History(texel.x, texel.y));
+        sum.rho += counts ? texel.x : 0.0;
+        sum.n += counts ? texel.y : 0.0;
+    }
+    float psi = mix(estimated(sum), estimated(h), count > 0 ? sampled : 1.0);
+    imageStore(shadow, pixel, vec4(eyeDepth > 0.0 ? clamp(psi, 0.0, 1.0) : 0.0));
+}
