@@ -80,7 +80,7 @@ struct FilterParameters : ParameterGroup {
     Real radiusScale{set,
                      {.id = "radius-scale",
                       .label = "Radius scale",
-                      .value = 1,
+                      .value = 0.5,
                       .min = 0,
                       .max = 4,
                       .source = "Scherzer 2009 eq. 6; thesis 5.6, 5.9 to 5.12",
@@ -446,7 +446,8 @@ private:
         const uint32_t point = estimates(inputs) ? i : i + 1;
         ShadowMapDescription description =
             parameters_.map.describe(central ? lightCentre : lightPoint(inputs.light, samplePoint(inputs.seed, point)));
-        if (!central && halfSize(inputs.light) != vec2(0)) description.shift = gridShift(i);
+        if (!central && halfSize(inputs.light) != vec2(0))
+            description.shift = parameters_.sequence == Sequence::R2 ? haltonPoint(i + 1) - 0.5f : gridShift(i);
         description.signMovers = moves(inputs) && parameters_.moving != Moving::Ignore;
         if (description.signMovers) description.format = Format::R32F;
         return description;

@@ -60,6 +60,7 @@ Found lookUp(Receiver r, Before b)
 #endif
     ivec2 size = textureSize(history, 0);
     vec3 centre = lastRay(b.place);
+    bool seen = all(greaterThanEqual(b.place, vec2(0.0))) && all(lessThan(b.place, vec2(size)));
     float share = 0.0;
     float blockerShare = 0.0;
     Found found = Found(History(0.0, 0.0), 0.0, false);
@@ -67,7 +68,7 @@ Found lookUp(Receiver r, Before b)
         ivec2 step = ivec2(i & 1, i >> 1);
         vec2 place = corner + vec2(step);
         float weight = (step.x == 1 ? f.x : 1.0 - f.x) * (step.y == 1 ? f.y : 1.0 - f.y);
-        bool inside = all(greaterThanEqual(place, vec2(0.0))) && all(lessThan(place, vec2(size)));
+        bool inside = seen && all(greaterThanEqual(place, vec2(0.0))) && all(lessThan(place, vec2(size)));
         vec4 texel = texelFetch(history, clamp(ivec2(place), ivec2(0), size - 1), 0);
         float expected = depthOnPlane(b.eyeDepth, r.normalWorld, centre, lastRay(place + 0.5));
         bool same = sameSurface(expected, abs(texel.z), absoluteTest ? epsilonMetres : epsilon, !absoluteTest);
