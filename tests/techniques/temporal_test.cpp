@@ -256,7 +256,7 @@ TEST_CASE("things that move keep their history, and the shadows of things that m
     int moved = 0, kept = 0;
     for (size_t i = 0; i < after.size(); ++i) {
         const float* m = &motion.values[i * static_cast<size_t>(motion.channels)];
-        if (std::hypot(m[0], m[1]) < 0.3f || after[i].z == 0) continue;
+        if (std::hypot(m[0], m[1]) < 0.1f || after[i].z == 0) continue;
         ++moved;
         kept += after[i].y > 4;
     }
