@@ -140,7 +140,7 @@ struct FilterParameters : ParameterGroup {
               {.id = "s-min",
                .label = "Least error",
                .symbol = "s_min",
-               .value = 0.02,
+               .value = 0.05,
                .min = 0,
                .max = 1,
                .source = "thesis 5.13 (1/32; listing 1/50)",
@@ -429,6 +429,16 @@ public:
 
 private:
     static bool moves(const Inputs& inputs) { return inputs.geometryBuffer.motion.has_value(); }
+    // Every pixel finds its own texel, and no surface is new.
+    bool stands(const Inputs& inputs, const PastImage& past) const {
+        if (!inputs.last || !past.valid() || moves(inputs)) return false;
+        const Real& epsilon =
+            parameters_.depthTest == DepthTest::Absolute ? parameters_.epsilonMetres : parameters_.epsilon;
+        if (epsilon == 0 || parameters_.moving == Moving::Decrement) return false;
+        const View &now = inputs.view, before = grown(inputs.last->view, inputs.margin);
+        return now.size == before.size && now.clipFromWorld == before.clipFromWorld && now.rayDx == before.rayDx &&
+               now.rayCorner == before.rayCorner && !lightChanged(inputs);
+    }
     static bool lightChanged(const Inputs& inputs) {
         if (!inputs.last) return false;
         const AreaLight &now = inputs.light, &before = inputs.last->light;
@@ -474,6 +484,7 @@ private:
                           .channels = buffer.channels,
                           .format = buffer.format,
                           .withMargin = true};
+        if (stands(inputs, past)) resolver.defines.push_back({"STILL"});
         if (!moves(inputs))
             return resolve(flow, scope, inputs, resolver, {{"shadowMap", map.depth}, {"history", past}}, parameters_);
         resolver.defines.push_back({"MOTION"});

@@ -78,14 +78,16 @@ bool sameSurface(float expected, float stored, float epsilon, bool relative)
     return abs(stored - expected) < (relative ? epsilon * abs(stored) : epsilon);
 }
 
-// Along a pixel's ray the depth of the plane that a neighbouring ray, `ray` to `centre`, meets at depth `d`; d itself where
-// the plane is seen edge on. `n` is its normal; both rays go to eye depth 1.
-float depthOnPlane(float d, vec3 n, vec3 centre, vec3 ray)
+// The same for a neighbouring pixel, of which the surface's plane is asked and not its depth: the plane that this pixel's
+// ray meets at depth d is met by the other ray at d · from / along, with `from` and `along` its normal's products with the
+// two rays to eye depth 1. Seen edge on (a factor of two from pixel to pixel) it is d. Without a division.
+bool samePlane(float d, float from, float along, float stored, float epsilon, bool relative)
 {
-    float along = dot(n, ray);
-    float from = dot(n, centre);
-    float ratio = from / along;
-    return ratio > 0.5f && ratio < 2.0f ? d * ratio : d;
+    bool level = from * along > 0.0f && abs(along) < 2.0f * abs(from) && abs(from) < 2.0f * abs(along);
+    float expected = level ? d * from : d;
+    float found = level ? stored * along : stored;
+    float unit = level ? abs(along) : 1.0f;
+    return abs(found - expected) < epsilon * (relative ? abs(found) : unit);
 }
 
 // Where the penumbra's edge falls: what a blocker's shadow moves by on the receiver's plane of normal n while the light's

@@ -17,75 +17,82 @@ uniform writeonly image2D shadowBuffer; // ρ, n, eye depth [m] (negative: a mov
 
 const bool absoluteTest = DEPTH_TEST == DEPTH_TEST_ABSOLUTE;
 
-// Where a surface was in the last frame.
-struct Before {
-    vec2 place;     // [pixels]
-    float eyeDepth; // [m]
-};
-
-Before findBefore(Receiver r)
-{
-    vec3 positionWorld = view.eyeWorld.xyz + r.eyeDepth * r.ray;
-    vec4 clip = lastView.clipFromWorld * vec4(positionWorld, 1.0);
-    Before b = Before((clip.xy / clip.w * 0.5 + 0.5) * lastView.size.xy, clip.w);
-#ifdef MOTION
-    // The motion image is in half floats: only things that really moved are taken from it.
-    vec3 moved = texelFetch(motion, r.pixel, 0).xyz;
-    vec2 place = vec2(r.pixel) + 0.5 + moved.xy;
-    if (distance(place, b.place) > 0.02 + 0.002 * length(moved.xy)) b = Before(place, r.eyeDepth + moved.z);
-#endif
-    return b;
-}
-
-vec3 lastRay(vec2 place) { return lastView.rayCorner.xyz + place.x * lastView.rayDx.xyz + place.y * lastView.rayDy.xyz; }
-
 // A mean over those texels of the last frame that show the same surface; n = 0: none does.
 struct Found {
     History h;
     float blocker; // [m], 0: not known
     bool tagged;   // the shadow of something that moved
+    float share, blockerShare; // of the texels
 };
 
-Found lookUp(Receiver r, Before b)
+// Fetches outside the buffer are 0, which is no history. What does not count is left out by choice: nothing times NaN is
+// NaN.
+void addTexel(inout Found found, ivec2 place, float weight, float d, float from, float along)
 {
+    vec4 texel = texelFetch(history, place, 0);
+    bool same = samePlane(d, from, along, abs(texel.z), absoluteTest ? epsilonMetres : epsilon, !absoluteTest);
+    float w = same && sound(History(texel.x, texel.y)) ? weight : 0.0;
+    float w_b = texel.w != 0.0 && abs(texel.w) < 1e30 ? w : 0.0;
+    found.h.rho += w > 0.0 ? w * texel.x : 0.0;
+    found.h.n += w > 0.0 ? w * texel.y : 0.0;
+    found.share += w;
+    found.blocker += w_b > 0.0 ? w_b * texel.w : 0.0;
+    found.blockerShare += w_b;
+    found.tagged = found.tagged || (w > 0.0 && texel.z < 0.0);
+}
+
+Found lookUp(Receiver r)
+{
+    Found found = Found(History(0.0, 0.0), 0.0, false, 0.0, 0.0);
+#ifdef STILL
+    // Nothing has moved: the texel is the pixel's own, and shows the same surface.
+    vec4 texel = texelFetch(history, r.pixel, 0);
+    bool known = sound(History(texel.x, texel.y));
+    found.h.rho = known ? texel.x : 0.0;
+    found.h.n = known ? texel.y : 0.0;
+    found.blocker = known && abs(texel.w) < 1e30 ? texel.w : 0.0;
+    return found;
+#else
+    // Where the surface was in the last frame [pixels], and its eye depth.
+    vec4 clip = lastView.clipFromWorld * vec4(view.eyeWorld.xyz + r.eyeDepth * r.ray, 1.0);
+    vec2 place = (clip.xy / clip.w * 0.5 + 0.5) * lastView.size.xy;
+    float d = clip.w;
+#ifdef MOTION
+    // The motion image is in half floats: only things that really moved are taken from it.
+    vec3 moved = texelFetch(motion, r.pixel, 0).xyz;
+    vec2 there = vec2(r.pixel) + 0.5 + moved.xy;
+    bool moves = distance(there, place) > 0.02 + 0.002 * length(moved.xy);
+    place = moves ? there : place;
+    d = moves ? r.eyeDepth + moved.z : d;
+#endif
+    if (any(lessThan(place, vec2(0.0))) || any(greaterThanEqual(place, lastView.size.xy))) d = -1.0; // no surface has it
+
+    // The products of the surface's normal with the rays of the last view.
+    vec3 n = r.normalWorld;
+    float x = dot(n, lastView.rayDx.xyz);
+    float y = dot(n, lastView.rayDy.xyz);
+    float from = dot(n, lastView.rayCorner.xyz) + place.x * x + place.y * y;
 #if LOOKUP == LOOKUP_BILINEAR
     // A view at rest must not blur, however long: fractions below 1/256 are rounding.
-    vec2 corner = floor(b.place - 0.5);
-    vec2 f = floor((b.place - 0.5 - corner) * 256.0 + 0.5) / 256.0;
-    const int texels = 4;
+    vec2 corner = floor(place - 0.5);
+    vec2 f = floor((place - 0.5 - corner) * 256.0 + 0.5) / 256.0;
+    vec2 step = corner + 0.5 - place;
+    float along = from + step.x * x + step.y * y;
+    ivec2 texel = ivec2(corner);
+    addTexel(found, texel, (1.0 - f.x) * (1.0 - f.y), d, from, along);
+    addTexel(found, texel + ivec2(1, 0), f.x * (1.0 - f.y), d, from, along + x);
+    addTexel(found, texel + ivec2(0, 1), (1.0 - f.x) * f.y, d, from, along + y);
+    addTexel(found, texel + ivec2(1, 1), f.x * f.y, d, from, along + x + y);
+    float whole = 1.0 / max(found.share, 1e-6);
+    found.h.rho *= whole;
+    found.h.n *= whole;
+    found.blocker /= max(found.blockerShare, 1e-6);
 #else
-    vec2 corner = floor(b.place);
-    vec2 f = vec2(0.0);
-    const int texels = 1;
+    vec2 step = floor(place) + 0.5 - place;
+    addTexel(found, ivec2(floor(place)), 1.0, d, from, from + step.x * x + step.y * y);
 #endif
-    ivec2 size = textureSize(history, 0);
-    vec3 centre = lastRay(b.place);
-    bool seen = all(greaterThanEqual(b.place, vec2(0.0))) && all(lessThan(b.place, vec2(size)));
-    float share = 0.0;
-    float blockerShare = 0.0;
-    Found found = Found(History(0.0, 0.0), 0.0, false);
-    for (int i = 0; i < texels; ++i) {
-        ivec2 step = ivec2(i & 1, i >> 1);
-        vec2 place = corner + vec2(step);
-        float weight = (step.x == 1 ? f.x : 1.0 - f.x) * (step.y == 1 ? f.y : 1.0 - f.y);
-        bool inside = seen && all(greaterThanEqual(place, vec2(0.0))) && all(lessThan(place, vec2(size)));
-        vec4 texel = texelFetch(history, clamp(ivec2(place), ivec2(0), size - 1), 0);
-        float expected = depthOnPlane(b.eyeDepth, r.normalWorld, centre, lastRay(place + 0.5));
-        bool same = sameSurface(expected, abs(texel.z), absoluteTest ? epsilonMetres : epsilon, !absoluteTest);
-        bool counts = inside && same && sound(History(texel.x, texel.y)) && weight > 0.0;
-        bool blocked = counts && texel.w != 0.0 && abs(texel.w) < 1e30;
-        // Chosen, not multiplied: nothing times NaN is NaN.
-        found.h.rho += counts ? weight * texel.x : 0.0;
-        found.h.n += counts ? weight * texel.y : 0.0;
-        share += counts ? weight : 0.0;
-        found.blocker += blocked ? weight * texel.w : 0.0;
-        blockerShare += blocked ? weight : 0.0;
-        found.tagged = found.tagged || (counts && texel.z < 0.0);
-    }
-    found.h.rho /= max(share, 1e-6);
-    found.h.n /= max(share, 1e-6);
-    found.blocker /= max(blockerShare, 1e-6);
     return found;
+#endif
 }
 
 void main()
@@ -102,7 +109,7 @@ void main()
     float tau = r.known >= 0.0 ? r.known : belowHorizon || blocked ? 1.0 : 0.0;
     bool moving = blocked && z < 0.0;
 
-    Found past = lookUp(r, findBefore(r));
+    Found past = lookUp(r);
     History h = limited(past.h, keep.x);
     bool tagged = moving;
 #if MOVING == MOVING_DISOCCLUSION
@@ -120,14 +127,14 @@ void main()
     bool fresh = h.n <= 0.0;
     History start = History(tau, 1.0);
     float startBlocker = noBlocker;
-#if START != START_HARD
+#if START != START_HARD && !defined(STILL)
     vec2 shift = rotate != 0 ? pixelShift(vec2(r.pixel)) : vec2(0.0);
     vec2 halfLight = lightView.light.xy;
     Lookup nearer = makeLookup(r, depthBias, slopeBias, receiverPlane != 0, true);
     int searched = fresh && r.known < 0.0 ? searchTaps : 0;
     startBlocker = meanBlocker(r, nearer, halfLight, s, shift, searched, 1.0 / float(searchTaps), true);
 #endif
-#if START == START_PCSS
+#if START == START_PCSS && !defined(STILL)
     int filtered = startBlocker > noBlocker ? filterTaps : 0;
     float psi = filteredShadow(r, nearer, halfLight, s, startBlocker, shift, filtered, 1.0 / float(filterTaps));
     if (halfLight.x + halfLight.y > 0.0) { // a point needs no estimate

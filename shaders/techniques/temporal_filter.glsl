@@ -15,8 +15,6 @@ vec2 entry(int i)
     return (i & 1) == 0 ? pair.xy : pair.zw;
 }
 
-vec3 rayTo(vec2 place) { return view.rayCorner.xyz + place.x * view.rayDx.xyz + place.y * view.rayDy.xyz; }
-
 // From a displacement of the point at `depth` along `ray` [m] to one on the screen [pixels].
 vec2 pixelsOf(vec3 across, vec3 ray, float depth)
 {
@@ -38,7 +36,7 @@ void main()
     History h = History(here.x, here.y);
     float eyeDepth = abs(here.z);
     vec2 centre = vec2(pixel + margin) + 0.5;
-    vec3 ray = rayTo(centre);
+    vec3 ray = view.rayCorner.xyz + centre.x * view.rayDx.xyz + centre.y * view.rayDy.xyz;
 
 #if ERROR == ERROR_CAUTIOUS
     float error = cautiousError(h);
@@ -83,6 +81,11 @@ void main()
     float share = 1.0 / float(taps);
     vec2 state = turn != 0 ? pixelShift(vec2(pixel)) : vec2(0.0);
 #endif
+    // The products of the normal with the rays.
+    float alongCorner = dot(n, view.rayCorner.xyz);
+    float alongX = dot(n, view.rayDx.xyz);
+    float alongY = dot(n, view.rayDy.xyz);
+    float from = dot(n, ray);
     for (int i = 0; i < count; ++i) {
 #if NEIGHBOURHOOD == NEIGHBOURHOOD_BOX
         state = latticeNext(state, share);
@@ -92,14 +95,14 @@ void main()
         o = vec2(spin.x * o.x - spin.y * o.y, spin.y * o.x + spin.x * o.y);
 #endif
         vec2 place = floor(centre + o.x * axisX + o.y * axisY);
-        bool inside = all(greaterThanEqual(place, vec2(0.0))) && all(lessThan(place, vec2(size)));
-        vec4 texel = texelFetch(shadowBuffer, clamp(ivec2(place), ivec2(0), size - 1), 0);
+        vec4 texel = texelFetch(shadowBuffer, ivec2(place), 0); // outside it is 0, which is no history
 #if FOOTPRINT == FOOTPRINT_SURFACE
-        float expected = depthOnPlane(eyeDepth, n, ray, rayTo(place + 0.5));
+        float along = alongCorner + (place.x + 0.5) * alongX + (place.y + 0.5) * alongY;
+        bool same = samePlane(eyeDepth, from, along, abs(texel.z), neighbourEpsilon, true);
 #else
-        float expected = eyeDepth;
+        bool same = sameSurface(eyeDepth, abs(texel.z), neighbourEpsilon, true);
 #endif
-        bool counts = inside && sameSurface(expected, abs(texel.z), neighbourEpsilon, true) && sound(History(texel.x, texel.y));
+        bool counts = same && sound(History(texel.x, texel.y));
         sum.rho += counts ? texel.x : 0.0;
         sum.n += counts ? texel.y : 0.0;
     }

@@ -129,24 +129,33 @@ TEST_CASE("surfaces are told apart absolutely or relatively, as in the papers") 
     }
 }
 
-TEST_CASE("the depth of a receiver's plane along another ray is where that ray meets it") {
+TEST_CASE("a neighbour is of the same surface if it lies where its ray meets the surface's plane") {
     std::mt19937 random(3);
     std::uniform_real_distribution<double> u(-1, 1);
     int met = 0;
     for (int i = 0; i < 2000; ++i) {
         const glm::dvec3 n = glm::normalize(glm::dvec3(u(random), u(random), u(random)));
         const glm::dvec3 centre(u(random), u(random), -1), ray(centre.x + 0.1 * u(random), centre.y + 0.1 * u(random), -1);
-        const double d = 3 + u(random), exact = d * glm::dot(n, centre) / glm::dot(n, ray);
-        const double depth = f64::depthOnPlane(d, n, centre, ray);
-        if (exact > 0.51 * d && exact < 1.99 * d) {
-            CHECK(depth == Approx(exact));
-            ++met;
-        } else if (!(exact > 0.49 * d && exact < 2.01 * d)) {
-            CHECK(depth == d);
+        const double from = glm::dot(n, centre), along = glm::dot(n, ray), d = 3 + u(random), exact = d * from / along;
+        for (const bool relative : {true, false}) {
+            const double epsilon = 0.01, step = relative ? epsilon * exact : epsilon;
+            const auto same = [&](double stored) { return f64::samePlane(d, from, along, stored, epsilon, relative); };
+            if (exact > 0.51 * d && exact < 1.99 * d) {
+                CHECK(same(exact));
+                CHECK(same(exact + 0.98 * step));
+                CHECK_FALSE(same(exact + 1.02 * step));
+                CHECK_FALSE(same(exact - 1.02 * step));
+                CHECK(f32::samePlane(float(d), float(from), float(along), float(exact), float(epsilon), relative));
+                ++met;
+            } else if (!(exact > 0.49 * d && exact < 2.01 * d)) {
+                CHECK(same(d));
+            }
         }
-        CHECK(std::isfinite(f32::depthOnPlane(1, {0, 0, 1}, {1, 0, 0}, {0, 1, 0}))); // 0/0
     }
-    CHECK(met > 1000);
+    CHECK(met > 2000);
+    const float nan = std::numeric_limits<float>::quiet_NaN(), infinity = std::numeric_limits<float>::infinity();
+    for (const float bad : {nan, infinity, 0.0f}) CHECK_FALSE(f32::samePlane(3, 1, 1, bad, 0.5f, true));
+    CHECK(f32::samePlane(3, 0, 0, 3, 0.5f, true)); // edge on
 }
 
 TEST_CASE("a shadow moves along the surface it falls on") {

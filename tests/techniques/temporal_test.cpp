@@ -189,7 +189,7 @@ TEST_CASE("a poisoned texel of the history is dropped and does not spread") {
                 for (int c = 0; c < 4; ++c) REQUIRE(std::isfinite(after[i][c]));
                 if (i != at && after[i].z != 0) REQUIRE(after[i].y == 4 + 5); // the start counts for 4
             }
-            CHECK(after[at].y == (std::isnan(poison.w) && poison.x == 2 ? 5 + 1 : 4)); // a blocker alone costs nothing
+            CHECK(after[at].y == (std::isnan(poison.w) && poison.x == 2 ? 5 + 1 : 1)); // a blocker alone costs nothing
         }
 }
 
