@@ -13,8 +13,8 @@ namespace penumbra {
 
 // The surfaces that receive shadows, seen from the camera (or from elsewhere: a technique must not assume the camera).
 struct GeometryBuffer {
-    Image depth;                 // R32F: eye depth [m], 0 where there is no surface
-    Image normal;                // RGBA16Snorm: xy geometric, zw shading normal, world space, octahedral
+    Image depth;  // R32F: eye depth [m], 0 where there is no surface
+    Image normal; // RGBA16Snorm: xy geometric, zw shading normal, world space, octahedral
     // RGBA16F: last frame's position minus this one's, xy [pixels] and z eye depth [m]; only when something moves.
     std::optional<Image> motion;
 };
@@ -42,8 +42,8 @@ struct Inputs {
     std::span<const Occluder> occluders;
     uint32_t frame; // index of the frame since the last reset, for sequences
     uint32_t seed;
-    bool progressive = false;  // the frame may show a part of the work; later ones do the rest
-    glm::ivec2 margin{0, 0};   // of the view [pixels]
+    bool progressive = false;        // the frame may show a part of the work; later ones do the rest
+    glm::ivec2 margin{0, 0};         // of the view [pixels]
     const LastFrame* last = nullptr; // null: this is the first
 
     glm::ivec2 pictureSize() const { return view.size - 2 * margin; }

@@ -45,7 +45,8 @@ PreparedScene PreparedScene::shared() const {
 Renderer::Renderer() : Renderer(checkedDriver(), std::make_shared<ProgramLibrary>(shaderFolder())) {}
 
 Renderer::Renderer(std::string driver, std::shared_ptr<ProgramLibrary> programs)
-    : driver_(std::move(driver)), programs_(std::move(programs)) {
+    : driver_(std::move(driver))
+    , programs_(std::move(programs)) {
     for (const std::string_view name : {"llvmpipe", "softpipe", "SWR"})
         software_ = software_ || driver_.find(name) != std::string::npos;
     glPixelStorei(GL_UNPACK_ALIGNMENT, 1);

@@ -236,14 +236,13 @@ Image resolve(Flow& flow, Scope scope, const Inputs& inputs, const Resolver& res
     for (const Define& define : resolver.defines) work.defines.push_back(define);
     if (resolver.table > 0) work.defines.push_back({"TABLE", resolver.table});
     const glm::ivec2 size = resolver.withMargin ? inputs.view.size : inputs.pictureSize();
-    PassSpec pass{
-        .stage = Stage::Resolve,
-        .name = resolver.pass,
-        .work = work,
-        .reads = {{"depth", inputs.geometryBuffer.depth}, {"normal", inputs.geometryBuffer.normal}},
-        .writes = {{resolver.writes, resolver.format, {size.x, size.y}, resolver.channels}},
-        .constants = resolver.constants,
-        .parameters = &parameters};
+    PassSpec pass{.stage = Stage::Resolve,
+                  .name = resolver.pass,
+                  .work = work,
+                  .reads = {{"depth", inputs.geometryBuffer.depth}, {"normal", inputs.geometryBuffer.normal}},
+                  .writes = {{resolver.writes, resolver.format, {size.x, size.y}, resolver.channels}},
+                  .constants = resolver.constants,
+                  .parameters = &parameters};
     for (const Read& read : reads) pass.reads.push_back(read);
     return flow.pass(scope, pass);
 }

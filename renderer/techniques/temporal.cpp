@@ -9,8 +9,8 @@
 //      its test (eq. 5), a new one starts with an estimate
 //   3. filter: what is shown is ψ̂ where its standard error (eq. 3) is small, else a mean of neighbours
 //
-// The buffer holds ρ_n, n, eye depth and mean blocker depth, twice (last frame's and this one's): 32 bytes a pixel in 32
-// bits, 16 in 16. The picture has a margin in it, so that what comes into view has a history.
+// The buffer holds ρ_n, n, eye depth and mean blocker depth, twice (last frame's and this one's): 32 bytes a pixel in
+// 32 bits, 16 in 16. The picture has a margin in it, so that what comes into view has a history.
 #include "renderer/core/hash.h"
 #include "renderer/core/technique.h"
 #include "renderer/shadow_map/poisson_disk.h"
@@ -396,6 +396,7 @@ struct HistoryConstants {
 
 struct FilterConstants {
     ResolveConstants resolve;
+    vec4 forwardScale;       // xyz the view axis, w = pixels² per m² at eye depth 1; pixels are square
     vec4 taps[mostTaps / 2]; // of the unit disk, two to a vector
 };
 
@@ -488,13 +489,17 @@ private:
         if (!moves(inputs))
             return resolve(flow, scope, inputs, resolver, {{"shadowMap", map.depth}, {"history", past}}, parameters_);
         resolver.defines.push_back({"MOTION"});
-        return resolve(
-            flow, scope, inputs, resolver,
-            {{"shadowMap", map.depth}, {"history", past}, {"motion", *inputs.geometryBuffer.motion}}, parameters_);
+        return resolve(flow, scope, inputs, resolver,
+                       {{"shadowMap", map.depth}, {"history", past}, {"motion", *inputs.geometryBuffer.motion}},
+                       parameters_);
     }
 
     Image show(Flow& flow, Scope scope, const Inputs& inputs, const LightViewBlock& light, Image history) const {
-        FilterConstants constants{resolveConstants(inputs, light), {}};
+        const View& view = inputs.view;
+        FilterConstants constants{
+            resolveConstants(inputs, light),
+            vec4(glm::normalize(glm::cross(view.rayDy, view.rayDx)), 1 / glm::dot(view.rayDx, view.rayDx)),
+            {}};
         if (parameters_.filter.neighbourhood == Neighbourhood::Poisson) {
             int i = 0;
             for (const vec2 p : poissonDisk(parameters_.filter.taps)) {

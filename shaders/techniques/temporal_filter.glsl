@@ -3,6 +3,7 @@
 // surface, as wide as the penumbra. Stores nothing that a later frame reads. See renderer/techniques/temporal.cpp.
 //
 // Texture reads: 1 of the buffer and the normal; where it filters, one a tap more.
+#define OWN_CONSTANTS vec4 forward_scale; // xyz the view axis, w = pixels² per m² at eye depth 1
 #include "resolve.glsl"
 #include "lib/temporal.glsl"
 #include "lib/sampling.glsl"
@@ -18,12 +19,8 @@ vec2 entry(int i)
 // From a displacement of the point at `depth` along `ray` [m] to one on the screen [pixels].
 vec2 pixelsOf(vec3 across, vec3 ray, float depth)
 {
-    vec3 dx = view.rayDx.xyz;
-    vec3 dy = view.rayDy.xyz;
-    float perPixel2 = dot(dx, dx); // pixels are square
-    vec3 forward = normalize(cross(dx, dy)) * -1.0;
-    vec3 flat_ = across - dot(across, forward) * ray;
-    return vec2(dot(flat_, dx), dot(flat_, dy)) / (perPixel2 * depth);
+    vec3 aside = across - dot(across, forward_scale.xyz) * ray;
+    return vec2(dot(aside, view.rayDx.xyz), dot(aside, view.rayDy.xyz)) * (forward_scale.w / depth);
 }
 
 void main()
@@ -62,7 +59,7 @@ void main()
     vec2 axisY = pixelsOf(alongSurface(worldFromLight[1] * halfWidth.y, towards, n), ray, max(eyeDepth, 1e-6));
 #else
     // Equation 6, and 5.6 with 5.9 and 5.10: a circle on the screen.
-    float radius = halfWidth.x / (length(view.rayDx.xyz) * max(eyeDepth, 1e-6));
+    float radius = halfWidth.x * sqrt(forward_scale.w) / max(eyeDepth, 1e-6);
     vec2 axisX = vec2(radius, 0.0);
     vec2 axisY = vec2(0.0, radius);
 #endif
@@ -74,8 +71,9 @@ void main()
 
     bool filters = eyeDepth > 0.0 && sampled < 1.0 && here.w != 0.0 && longest > 0.5;
     int count = NEIGHBOURHOOD != NEIGHBOURHOOD_OFF && filters ? taps : 0;
-    float angle = turn != 0 ? 6.2831853 * gradientNoise(vec2(pixel)) : 0.0;
-    vec2 spin = vec2(cos(angle), sin(angle));
+    // Turned by up to a quarter to either side, as the tangent of half the angle has it.
+    float tangent = turn != 0 ? 2.0 * gradientNoise(vec2(pixel)) - 1.0 : 0.0;
+    vec2 spin = vec2(1.0 - tangent * tangent, 2.0 * tangent) / (1.0 + tangent * tangent);
     History sum = h;
 #if NEIGHBOURHOOD == NEIGHBOURHOOD_BOX
     float share = 1.0 / float(taps);

@@ -17,8 +17,13 @@ TEST_CASE("table 1 of the paper comes out, for n = 2 to 7") {
     // ψ̂_n, its variance and standard error, as printed and to more digits.
     constexpr double printed[7][3] = {{1.00, 0, 0},       {0.50, 0.25, 0.50}, {0.67, 0.11, 0.33}, {0.75, 0.06, 0.25},
                                       {0.80, 0.04, 0.20}, {0.67, 0.04, 0.21}, {0.71, 0.03, 0.18}};
-    constexpr double exact[7][2] = {{1, 1},      {0.5, 0.5},           {2 / 3.0, 1 / 3.0},     {0.75, 0.25},
-                                    {0.8, 0.2}, {2 / 3.0, 0.2108185107}, {5 / 7.0, 0.1844277784}};
+    constexpr double exact[7][2] = {{1, 1},
+                                    {0.5, 0.5},
+                                    {2 / 3.0, 1 / 3.0},
+                                    {0.75, 0.25},
+                                    {0.8, 0.2},
+                                    {2 / 3.0, 0.2108185107},
+                                    {5 / 7.0, 0.1844277784}};
     constexpr double cautious[7] = {0.2357022604, 0.2236067977, 0.2,         0.1781741613,
                                     0.1597191412, 0.1613743061, 0.1490711985};
     f64::History h{};
@@ -106,8 +111,15 @@ TEST_CASE("what is not a history is never taken for one, nor a NaN for a surface
     const float nan = std::numeric_limits<float>::quiet_NaN(), infinity = std::numeric_limits<float>::infinity();
     CHECK(f32::sound({3, 4}));
     CHECK(f32::sound({0, 1}));
-    for (const f32::History& h : {f32::History{0, 0}, {nan, 4}, {3, nan}, {nan, nan}, {infinity, infinity}, {1, infinity},
-                                  {5, 4}, {-1, 4}, {1, -4}})
+    for (const f32::History& h : {f32::History{0, 0},
+                                  {nan, 4},
+                                  {3, nan},
+                                  {nan, nan},
+                                  {infinity, infinity},
+                                  {1, infinity},
+                                  {5, 4},
+                                  {-1, 4},
+                                  {1, -4}})
         CHECK_FALSE(f32::sound(h));
     for (const bool relative : {false, true})
         for (const float bad : {nan, infinity, -infinity}) {
@@ -122,8 +134,11 @@ TEST_CASE("surfaces are told apart absolutely or relatively, as in the papers") 
         double now, before;
         bool absolutely, relatively; // ε = 0.001
     };
-    for (const Row row : {Row{0.5, 0.5008, true, false}, {0.5, 0.502, false, false}, {100, 100.05, false, true},
-                          {100, 100.5, false, false}, {0.0005, 0.0006, true, false}}) {
+    for (const Row row : {Row{0.5, 0.5008, true, false},
+                          {0.5, 0.502, false, false},
+                          {100, 100.05, false, true},
+                          {100, 100.5, false, false},
+                          {0.0005, 0.0006, true, false}}) {
         CHECK(f64::sameSurface(row.now, row.before, 0.001, false) == row.absolutely);
         CHECK(f64::sameSurface(row.now, row.before, 0.001, true) == row.relatively);
     }
@@ -135,7 +150,8 @@ TEST_CASE("a neighbour is of the same surface if it lies where its ray meets the
     int met = 0;
     for (int i = 0; i < 2000; ++i) {
         const glm::dvec3 n = glm::normalize(glm::dvec3(u(random), u(random), u(random)));
-        const glm::dvec3 centre(u(random), u(random), -1), ray(centre.x + 0.1 * u(random), centre.y + 0.1 * u(random), -1);
+        const glm::dvec3 centre(u(random), u(random), -1),
+            ray(centre.x + 0.1 * u(random), centre.y + 0.1 * u(random), -1);
         const double from = glm::dot(n, centre), along = glm::dot(n, ray), d = 3 + u(random), exact = d * from / along;
         for (const bool relative : {true, false}) {
             const double epsilon = 0.01, step = relative ? epsilon * exact : epsilon;

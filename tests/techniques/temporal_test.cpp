@@ -242,7 +242,7 @@ TEST_CASE("things that move keep their history, and the shadows of things that m
     CHECK(tags(before) > 20);
     for (const glm::vec4 texel : before)
         if (texel.z < 0) CHECK(texel.y == 4); // estimated anew
-    b.frame(); // at rest
+    b.frame();                                // at rest
     CHECK(tags(b.buffer()) == 0);
 
     CHECK(tags(run("decrement")) > tags(before)); // those that the shadow has left, too
