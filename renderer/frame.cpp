@@ -192,10 +192,17 @@ Frame buildFrame(Flow& flow, const Session& session, const SceneState& state, co
     const View lastView = last ? grown(last->view, marginOf(last->view.size)) : view;
     pose(flow, state, geometry);
     const Surfaces surfaces = drawSurfaces(flow, view, state, geometry, lastView.clipFromWorld);
-    const Inputs inputs{view,          session.light,       surfaces.buffer,
-                        geometry,      state.poseVersion(), state.occluders(),
-                        session.frame, session.seed,        session.progressive,
-                        margin,        last};
+    const Inputs inputs{view,
+                        session.light,
+                        surfaces.buffer,
+                        geometry,
+                        state.poseVersion(),
+                        state.occluders(),
+                        session.frame,
+                        session.seed,
+                        session.progressive,
+                        margin,
+                        last};
     // Two techniques are instances a and b of one frame; what they need alike, such as the geometry buffer, is made
     // once.
     const bool lit = session.display.show == Show::Lit;

@@ -20,13 +20,16 @@ uniform sampler2D depth;  // eye depth [m], 0: no surface
 uniform sampler2D normal; // xy geometric normal, world, octahedral
 uniform writeonly image2D shadow;
 
+// From a pixel of the image that is written to its texel of the geometry buffer.
+ivec2 surfaceTexel(ivec2 pixel) { return pixel + ivec2(view.rayDx.w, view.rayDy.w); }
+
 // Defines, not flags: software renderers run both sides of a branch.
 const bool directional = DIRECTIONAL != 0;
 const bool roundLight = ROUND != 0; // a disk, or directional
 
 // A surface point in the coordinates of the shadow map.
 struct Receiver {
-    ivec2 pixel;
+    ivec2 pixel;        // of the image that is written
     float eyeDepth;     // [m], 0 without a surface
     vec3 ray;           // of the pixel, world, to eye depth 1 [m]
     vec3 normalWorld;   // unit, geometric, towards the viewer
@@ -53,11 +56,12 @@ Receiver findReceiver(float normalOffset)
 {
     Receiver r;
     r.pixel = texelHere().xy;
-    r.eyeDepth = texelFetch(depth, r.pixel, 0).x;
-    vec2 centre = vec2(r.pixel) + 0.5;
+    ivec2 texel = surfaceTexel(r.pixel);
+    r.eyeDepth = texelFetch(depth, texel, 0).x;
+    vec2 centre = vec2(texel) + 0.5;
     r.ray = view.rayCorner.xyz + centre.x * view.rayDx.xyz + centre.y * view.rayDy.xyz;
     vec3 positionWorld = view.eyeWorld.xyz + r.eyeDepth * r.ray;
-    r.normalWorld = unitFromOctahedral(texelFetch(normal, r.pixel, 0).xy);
+    r.normalWorld = unitFromOctahedral(texelFetch(normal, texel, 0).xy);
 
     r.positionLight = (lightView.lightFromWorld * vec4(positionWorld, 1.0)).xyz;
     r.normalLight = mat3(lightView.lightFromWorld) * r.normalWorld;
@@ -65,11 +69,11 @@ Receiver findReceiver(float normalOffset)
 
     vec2 s = lightView.sample_reference.xy;
     float f = lightView.sample_reference.z;
-    float texel = 2.0 * lightView.window.z * lightView.light.w; // on the reference plane [m]
+    float texelSize = 2.0 * lightView.window.z * lightView.light.w; // on the reference plane [m]
     // (R + ½) √2 w sin θ removes acne from planes at every angle and never diverges.
     vec3 towardsLight = normalize(directional ? vec3(s, 1.0) : vec3(s, 0.0) - r.positionLight);
     float cosine = dot(r.normalLight, towardsLight);
-    float texelHere = directional ? texel : texel * max(-r.positionLight.z, 0.0) / f;
+    float texelHere = directional ? texelSize : texelSize * max(-r.positionLight.z, 0.0) / f;
     r.positionLight += r.normalLight * (normalOffset * texelHere * sqrt(max(1.0 - cosine * cosine, 0.0)));
 
     bool behind = !directional && r.positionLight.z >= 0.0;

@@ -224,8 +224,10 @@ ViewBlock viewBlock(const View& view) {
             vec4(view.rayDx, 0), vec4(view.rayDy, 0),    vec4(view.size, view.near, view.far)};
 }
 
-ResolveConstants resolveConstants(const Inputs& inputs, const LightViewBlock& light) {
-    return {viewBlock(inputs.view), light};
+ResolveConstants resolveConstants(const Inputs& inputs, const LightViewBlock& light, bool withMargin) {
+    ResolveConstants constants{viewBlock(inputs.view), light};
+    if (!withMargin) constants.view.rayDx.w = float(inputs.margin.x), constants.view.rayDy.w = float(inputs.margin.y);
+    return constants;
 }
 
 Image resolve(Flow& flow, Scope scope, const Inputs& inputs, const Resolver& resolver,

@@ -134,7 +134,8 @@ struct ResolveConstants {
     LightViewBlock lightView;
 };
 ViewBlock viewBlock(const View& view);
-ResolveConstants resolveConstants(const Inputs& inputs, const LightViewBlock& light);
+// For a pass that writes an image of the picture's size or, `withMargin`, of the geometry buffer's.
+ResolveConstants resolveConstants(const Inputs& inputs, const LightViewBlock& light, bool withMargin = false);
 
 // A shader that includes shaders/resolve.glsl, and its constants: ResolveConstants, then `table` vectors of its own.
 struct Resolver {

@@ -58,7 +58,7 @@ public:
     Image build(Flow& flow, Scope scope, const Inputs& inputs) const override {
         const int samples = parameters_.samples;
         const int perFrame = inputs.progressive ? std::min<int>(parameters_.mapsPerFrame, samples) : samples;
-        const Extent extent{inputs.view.size.x, inputs.view.size.y};
+        const Extent extent{inputs.pictureSize().x, inputs.pictureSize().y};
         const ImageSpec total{"total", Format::R32F, extent, countChannels};
 
         std::variant<std::monostate, Image, PastImage> counted;

@@ -479,7 +479,7 @@ private:
         const View lastView = inputs.last ? grown(inputs.last->view, inputs.margin) : inputs.view;
         const float kept = lightChanged(inputs) ? float(parameters_.lightMemory) : float(mostFloats);
         Resolver resolver{.shader = "techniques/temporal.glsl",
-                          .constants = HistoryConstants{resolveConstants(inputs, map.view), viewBlock(lastView),
+                          .constants = HistoryConstants{resolveConstants(inputs, map.view, true), viewBlock(lastView),
                                                         vec4(kept, most, 0, 0)},
                           .writes = buffer.name,
                           .channels = buffer.channels,

@@ -8,7 +8,7 @@ struct ViewBlock {
     mat4 clipFromWorld;
     vec4 eyeWorld;
     vec4 rayCorner;
-    vec4 rayDx;
+    vec4 rayDx; // w, and that of rayDy: pixels between the edges of the geometry buffer and of the image that is written
     vec4 rayDy;
     vec4 size; // width, height [pixels], near, far [m]
 };

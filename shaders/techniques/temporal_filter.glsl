@@ -27,12 +27,12 @@ void main()
 {
     ivec2 pixel = texelHere().xy;
     ivec2 size = textureSize(shadowBuffer, 0);
-    ivec2 margin = (size - imageSize(shadow)) / 2;
-    vec4 here = texelFetch(shadowBuffer, pixel + margin, 0);
-    vec3 n = unitFromOctahedral(texelFetch(normal, pixel + margin, 0).xy);
+    ivec2 texel = surfaceTexel(pixel);
+    vec4 here = texelFetch(shadowBuffer, texel, 0);
+    vec3 n = unitFromOctahedral(texelFetch(normal, texel, 0).xy);
     History h = History(here.x, here.y);
     float eyeDepth = abs(here.z);
-    vec2 centre = vec2(pixel + margin) + 0.5;
+    vec2 centre = vec2(texel) + 0.5;
     vec3 ray = view.rayCorner.xyz + centre.x * view.rayDx.xyz + centre.y * view.rayDy.xyz;
 
 #if ERROR == ERROR_CAUTIOUS
@@ -93,16 +93,16 @@ void main()
         o = vec2(spin.x * o.x - spin.y * o.y, spin.y * o.x + spin.x * o.y);
 #endif
         vec2 place = floor(centre + o.x * axisX + o.y * axisY);
-        vec4 texel = texelFetch(shadowBuffer, ivec2(place), 0); // outside it is 0, which is no history
+        vec4 other = texelFetch(shadowBuffer, ivec2(place), 0); // outside it is 0, which is no history
 #if FOOTPRINT == FOOTPRINT_SURFACE
         float along = alongCorner + (place.x + 0.5) * alongX + (place.y + 0.5) * alongY;
-        bool same = samePlane(eyeDepth, from, along, abs(texel.z), neighbourEpsilon, true);
+        bool same = samePlane(eyeDepth, from, along, abs(other.z), neighbourEpsilon, true);
 #else
-        bool same = sameSurface(eyeDepth, abs(texel.z), neighbourEpsilon, true);
+        bool same = sameSurface(eyeDepth, abs(other.z), neighbourEpsilon, true);
 #endif
-        bool counts = same && sound(History(texel.x, texel.y));
-        sum.rho += counts ? texel.x : 0.0;
-        sum.n += counts ? texel.y : 0.0;
+        bool counts = same && sound(History(other.x, other.y));
+        sum.rho += counts ? other.x : 0.0;
+        sum.n += counts ? other.y : 0.0;
     }
     float psi = mix(estimated(sum), estimated(h), count > 0 ? sampled : 1.0);
     imageStore(shadow, pixel, vec4(eyeDepth > 0.0 ? clamp(psi, 0.0, 1.0) : 0.0));
