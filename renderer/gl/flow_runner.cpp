@@ -311,19 +311,19 @@ bool FlowRunner::settled(double milliseconds) {
     if (state == GL_TIMEOUT_EXPIRED) return false;
     glDeleteSync(std::exchange(fence_, nullptr));
     at_.lastMilliseconds = std::chrono::duration<double, std::milli>(Clock::now() - bandStart_).count();
-    at_.milliseconds += at_.lastMilliseconds;
+    at_.dearest = std::max(at_.dearest, at_.lastMilliseconds / static_cast<double>(at_.lastParts));
     milliseconds_ += at_.lastMilliseconds;
     return true;
 }
 
 // How many parts of the pass under way should fit into the time.
 size_t FlowRunner::nextBand(size_t all, size_t fewest, double millisecondsLeft) const {
-    const double mean = at_.pace->milliseconds;
-    if (at_.parts == 0 && mean < 0) return std::max(fewest, all / firstBandShare);
+    const double known = at_.pace->milliseconds;
+    if (at_.parts == 0 && known < 0) return std::max(fewest, all / firstBandShare);
     const double last = at_.parts == 0 ? 0 : at_.lastMilliseconds / static_cast<double>(at_.lastParts);
-    const double fitting = std::max(millisecondsLeft, 0.0) / std::max({mean, last, 1e-9});
+    const double fitting = std::max(millisecondsLeft, 0.0) / std::max({known, last, 1e-9});
     const size_t parts = fitting < static_cast<double>(all) ? static_cast<size_t>(fitting) : all;
-    return std::clamp<size_t>(mean < 0 ? std::min(parts, bandGrowth * at_.parts) : parts, 1, all);
+    return std::clamp<size_t>(known < 0 ? std::min(parts, bandGrowth * at_.parts) : parts, 1, all);
 }
 
 // A whole pass or, in as many milliseconds, a band of it; a shader that does not know where a band begins runs whole.
@@ -342,10 +342,10 @@ void FlowRunner::runPart(const Flow& flow, std::optional<double> millisecondsLef
         runDraw(flow, pass, *draw, millisecondsLeft && all > 1 ? nextBand(all, 1, *millisecondsLeft) : all);
     } else if (const PoseVertices* poseVertices = std::get_if<PoseVertices>(&pass.work)) {
         poseVertices->geometry->pose(*chosen_[at_.pass].plain);
-        at_.parts = 1;
+        at_.parts = at_.lastParts = 1;
     } else if (const Supply* supplied = std::get_if<Supply>(&pass.work)) {
         supply(flow, pass, *supplied);
-        at_.parts = 1;
+        at_.parts = at_.lastParts = 1;
     } else {
         const bool divisible = chosen_[at_.pass].plain->bandOrigin() >= 0 && all > 1;
         dispatch(flow, pass, millisecondsLeft && divisible ? nextBand(all, fewestFirst, *millisecondsLeft) : all);
@@ -362,7 +362,7 @@ bool FlowRunner::step(const Flow& flow, double milliseconds) {
     constexpr double mostlySpent = 0.8; // what is left then is too little for a band
     for (bool begun = false; settled(bands ? milliseconds - spent() : forever); begun = true) {
         if (at_.pass < flow.passes().size() && at_.parts == partsOf(flow, flow.passes()[at_.pass])) {
-            if (at_.pace && bands) at_.pace->milliseconds = at_.milliseconds / static_cast<double>(at_.parts);
+            if (at_.pace && bands) at_.pace->milliseconds = at_.dearest;
             at_ = {.pass = at_.pass + 1};
         }
         underWay_ = at_.pass < flow.passes().size();

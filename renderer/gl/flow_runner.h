@@ -70,14 +70,14 @@ private:
         Work work;
         Extent extent;
         FixedVector<uint32_t, 64> parameters;
-        double milliseconds; // a part, the mean; negative: not known yet
+        double milliseconds; // a part of the dearest band; negative: not known yet
         uint64_t lastUsed;
     };
     // The pass that is under way, as far as it has come.
     struct Progress {
         size_t pass = 0;
         size_t parts = 0;            // done: groups of texels in rows, then layers; pieces of geometry; or the one
-        double milliseconds = 0;     // that they took
+        double dearest = 0;          // milliseconds that a part took in the dearest band
         size_t lastParts = 0;        // of the last band
         double lastMilliseconds = 0; // that it took
         size_t constants = 0, parameters = 0; // where their bytes are
