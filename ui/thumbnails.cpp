@@ -95,7 +95,7 @@ bool Thumbnails::row(const Flow& flow, const Entry& entry, bool chosen, size_t i
     }
     if (chosen) list.AddRect(from, to, ImGui::GetColorU32(colour::accent), 0, 0, 0.12f * em);
 
-    // "a/pcss.shadow-map": the image's own name over that of whom it belongs to.
+    // "a/owner.image": the image's own name over that of whom it belongs to.
     const std::string_view label = flow.label(entry.label);
     const size_t dot = label.rfind('.');
     const std::string_view name = dot == std::string::npos ? label : label.substr(dot + 1);
