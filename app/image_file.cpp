@@ -159,18 +159,19 @@ std::string encodeExr(const fs::path& file, const Picture& picture, const Json& 
         name.copy(infos[i].name, sizeof(infos[i].name) - 1);
     }
     std::vector<EXRAttribute> attributes;
-    std::vector<std::string> texts;
-    if (!facts.is_null())
-        for (const Json& fact : facts) texts.push_back(textOf(fact));
-    for (size_t i = 0; i < texts.size(); ++i) {
-        EXRAttribute attribute = {};
-        const std::string name =
-            fmt::format("{}.{}", factsName, std::next(facts.begin(), static_cast<ptrdiff_t>(i)).key());
-        name.copy(attribute.name, sizeof(attribute.name) - 1);
-        std::strcpy(attribute.type, "string");
-        attribute.value = reinterpret_cast<unsigned char*>(texts[i].data()); // only read
-        attribute.size = static_cast<int>(texts[i].size());
-        attributes.push_back(attribute);
+    std::vector<std::string> texts; // that the attributes point into
+    if (!facts.is_null()) {
+        texts.reserve(facts.size());
+        for (const auto& [key, fact] : facts.items()) {
+            std::string& text = texts.emplace_back(textOf(fact));
+            EXRAttribute attribute = {};
+            const std::string name = fmt::format("{}.{}", factsName, key);
+            name.copy(attribute.name, sizeof(attribute.name) - 1);
+            std::strcpy(attribute.type, "string");
+            attribute.value = reinterpret_cast<unsigned char*>(text.data()); // only read
+            attribute.size = static_cast<int>(text.size());
+            attributes.push_back(attribute);
+        }
     }
     std::vector<int> pixelTypes(channels, TINYEXR_PIXELTYPE_FLOAT);
 
