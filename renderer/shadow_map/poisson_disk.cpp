@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: MIT
 #include "renderer/shadow_map/poisson_disk.h"
 
+#include <algorithm>
 #include <map>
+#include <mutex>
 #include <random>
 #include <vector>
 
@@ -10,6 +12,8 @@ namespace penumbra {
 using glm::vec2;
 
 std::span<const vec2> poissonDisk(int n) {
+    static std::mutex mutex; // a window draws while another thread measures; a set that is there stays as it is
+    const std::lock_guard lock(mutex);
     static std::map<int, std::vector<vec2>> sets;
     std::vector<vec2>& set = sets[n];
     std::mt19937 random(12345);

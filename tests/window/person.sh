@@ -69,19 +69,22 @@ until_() { # waits until a command succeeds
     fail "waited in vain for: $*"
 }
 hand() { xdotool "$@"; frames 4; } # does it and lets the program answer
-pictures() { find "$HOME/Pictures" -name '*.png' -printf '%T@ %p\n' | sort -n | cut -d' ' -f2-; }
-picture() { # strikes F12 and names the new file
-    local before now
-    before=$(pictures | wc -l)
-    xdotool key F12
-    for _ in $(seq 600); do
-        now=$(pictures | wc -l)
+files() { # with that ending, the newest last
+    find "$HOME/Pictures" -name "*.$1" -printf '%T@ %p\n' | sort -n | cut -d' ' -f2-
+}
+saved() { # ENDING, then what to do: names the new file that comes of it; gives up after $tries tenths of a second
+    local ending=$1 before now
+    before=$(files "$ending" | wc -l)
+    "${@:2}"
+    for _ in $(seq "${tries:-600}"); do
+        now=$(files "$ending" | wc -l)
         # Files appear whole: they are renamed into place.
-        ((now > before)) && { pictures | tail -n 1; return; }
+        ((now > before)) && { files "$ending" | tail -n 1; return; }
         sleep 0.1
     done
     return 1
 }
+picture() { saved png xdotool key F12; }
 drag() { # from X Y to X2 Y2 with a button, with frames in between
     hand mousemove "$1" "$2"
     hand mousedown "${5:-1}"

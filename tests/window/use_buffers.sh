@@ -12,19 +12,7 @@ low_end="614 505" low_field="655 528" automatic="617 558"
 middle="403 538" # of the view
 
 press() { xdotool mousemove $1 $2 sleep 0.1 mousedown "${3:-1}" sleep 0.1 mouseup "${3:-1}" sleep "${4:-0.3}"; }
-files() { find "$HOME/Pictures" -name "*.$1" -printf '%T@ %p\n' | sort -n | cut -d' ' -f2-; }
-saved() { # presses a button that saves, and names the new file with that ending
-    local before now
-    before=$(files "$1" | wc -l)
-    press $2
-    for _ in $(seq 100); do
-        now=$(files "$1" | wc -l)
-        ((now > before)) && { files "$1" | tail -n 1; return; }
-        sleep 0.1
-    done
-    return 1
-}
-seen() { saved png "$save_png" || fail "nothing was saved $*"; }
+seen() { saved png press $save_png || fail "nothing was saved $*"; }
 
 soon() { for _ in $(seq 15); do "$@" && return; sleep 0.2; done; return 1; } # slow machines draw late
 not() { ! "$@"; }
@@ -32,14 +20,14 @@ view() { xdotool mousemove 640 20 sleep 0.5; "$person" look "$window" 220 367 36
 
 start two-boxes --technique hard --size 1280x720
 xdotool key b
-for _ in $(seq 10); do first=$(saved png "$save_png") && break; done # a slow machine may still be starting
+for _ in $(seq 10); do first=$(tries=100 saved png press $save_png) && break; done # a slow machine may still be starting
 [[ -n ${first:-} ]] || fail "the panel saved nothing"
 
 depth_of_light=$(press $shadow_map && seen "of the shadow map")
 [[ $(head -c 8 "$depth_of_light" | od -An -tx1 | tr -d ' ') == 89504e470d0a1a0a ]] || fail "$depth_of_light is no PNG"
 [[ $(basename "$depth_of_light") == two-boxes-hard-hard.shadow-map-* ]] || fail "named $(basename "$depth_of_light")"
 [[ $(sizeOf "$depth_of_light") == 1024x1024 ]] || fail "the shadow map was saved as $(sizeOf "$depth_of_light")"
-raw=$(saved exr "$save_exr") || fail "no EXR was saved"
+raw=$(saved exr press $save_exr) || fail "no EXR was saved"
 [[ $(head -c 4 "$raw" | od -An -tx1 | tr -d ' ') == 762f3101 ]] || fail "$raw is no OpenEXR file"
 
 press $scene_normal

@@ -89,24 +89,13 @@ alive "presets"
 view=$(picture) || fail "F12 wrote no picture"
 "$penumbra" capture --like "$view" -o "$folder/again.png" >/dev/null 2>"$folder/stderr" || fail "--like failed"
 cmp -s "$view" "$folder/again.png" || fail "--like made another picture than $view"
-before=$(pictures | wc -l)
-xdotool mousemove 400 300 key shift+F12
-for _ in $(seq 100); do (($(pictures | wc -l) > before)) && break; sleep 0.1; done
-sleep 0.3
-whole=$(pictures | tail -n 1)
+whole=$(saved png xdotool mousemove 400 300 key shift+F12) || fail "Shift+F12 wrote no picture"
 [[ $(sizeOf "$whole") == 1280x720 ]] || fail "the picture of the window has $(sizeOf "$whole") pixels"
 told "$whole" '"panels":true' "Shift+F12"
-before=$(pictures | wc -l)
-click 110 16 # Picture
-for _ in $(seq 100); do (($(pictures | wc -l) > before)) && break; sleep 0.1; done
-sleep 0.3
-told "$(pictures | tail -n 1)" '"panels":false' "the button"
-before=$(pictures | wc -l)
+by_button=$(saved png click 110 16) || fail "the button Picture wrote none"
+told "$by_button" '"panels":false' "the button"
 click 153 16 # its menu
-click 250 64 # the whole window
-for _ in $(seq 100); do (($(pictures | wc -l) > before)) && break; sleep 0.1; done
-sleep 0.3
-whole=$(pictures | tail -n 1)
+whole=$(saved png click 250 64) || fail "the menu wrote no picture of the whole window"
 [[ $(sizeOf "$whole") == 1280x720 ]] || fail "the menu's picture of the window has $(sizeOf "$whole") pixels"
 
 # --- a picture dropped on the window brings back what it shows

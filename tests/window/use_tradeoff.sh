@@ -9,23 +9,11 @@ measure_all="650 336" cancel="832 336" save_png="660 444" save_csv="711 444" awa
 chart="12 325 528 385" # x, y, width, height
 
 press() { xdotool mousemove $1 $2; frames 2; xdotool mousedown 1; frames 2; xdotool mouseup 1; frames 2; }
-files() { find "$HOME/Pictures" -name "*.$1" -printf '%T@ %p\n' | sort -n | cut -d' ' -f2-; }
-saved() { # presses a button that saves, and names the new file with that ending
-    local before now
-    before=$(files "$1" | wc -l)
-    press $2
-    for _ in $(seq 50); do
-        now=$(files "$1" | wc -l)
-        ((now > before)) && { files "$1" | tail -n 1; return; }
-        sleep 0.1
-    done
-    return 1
-}
 techniques=$("$penumbra" list --json | grep -c '^      "id":')
 # Whether the table tells of every technique that it was measured side by side, over 20 frames, in the present view.
 measured() {
     sleep 1
-    table=$(saved csv "$save_csv") || return 1
+    table=$(tries=50 saved csv press $save_csv) || return 1
     (($(grep -cE '^[a-z-]+,.*,20,[0-9.e-]+,[0-9.e-]+,[0-9]+,[0-9]+,true,' "$table") == techniques))
 }
 # Where the chart has a run of seven pixels of the second technique's colour: its dot. "X Y", or nothing.
@@ -59,7 +47,7 @@ view=$(picture) || fail "no picture after a click on a dot"
 grep -aqE '"(id|technique)": ?"hard"' "$view" || fail "the click did not choose hard shadows"
 
 hand mousemove $away
-png=$(saved png "$save_png") || fail "the chart was not saved"
+png=$(saved png press $save_png) || fail "the chart was not saved"
 [[ $(basename "$png") == two-boxes-hard-trade-off-* && $(sizeOf "$png") == 528x385 ]] ||
     fail "the chart was saved as $(basename "$png") of $(sizeOf "$png") pixels"
 
