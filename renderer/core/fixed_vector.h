@@ -20,6 +20,7 @@ public:
         ensure(size_ < Capacity, "a fixed vector is full");
         items_[size_++] = item;
     }
+    void pop_back() { --size_; }
     void clear() { size_ = 0; }
     size_t size() const { return size_; }
     bool empty() const { return size_ == 0; }

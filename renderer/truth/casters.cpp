@@ -143,6 +143,25 @@ Casters::Casters(std::shared_ptr<const Scene> scene, const Pose& pose, int threa
     fail(error);
 }
 
+const Shafts& Casters::shafts() const {
+    std::call_once(shaftsOnce_, [&] { shafts_.emplace(positions_, triangles()); });
+    return *shafts_;
+}
+
+std::vector<Shafts::Triangle> Casters::triangles() const {
+    std::vector<Shafts::Triangle> all;
+    const auto add = [&](const uint32_t* indices, size_t count, uint32_t firstVertex, bool solid) {
+        for (size_t i = 0; i < count; i += 3)
+            all.push_back(
+                {{firstVertex + indices[i], firstVertex + indices[i + 1], firstVertex + indices[i + 2]}, solid});
+    };
+    add(indices_.data(), indices_.size(), 0, true);
+    for (const Masked& masked : masked_)
+        add(source_->indices.data() + masked.primitive->firstIndex, masked.primitive->indexCount, masked.firstVertex,
+            false);
+    return all;
+}
+
 void Casters::attach(const uint32_t* indices, size_t triangles, size_t firstVertex, size_t vertices, Masked* masked) {
     const RTCGeometry geometry = rtcNewGeometry(device_, RTC_GEOMETRY_TYPE_TRIANGLE);
     rtcSetSharedGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, positions_.data() + firstVertex,

@@ -5,8 +5,11 @@
 #include "renderer/core/progress.h"
 #include "renderer/scene/scene.h"
 #include "renderer/truth/embree.h"
+#include "renderer/truth/shafts.h"
 
 #include <memory>
+#include <mutex>
+#include <optional>
 #include <vector>
 
 namespace penumbra {
@@ -21,6 +24,9 @@ public:
 
     // Both faces of every triangle cast; points of masked materials that do not exist let rays pass.
     void occluded(const int* valid, RTCRay16& rays) const { occluded16(scene_, valid, rays); }
+
+    // Built when it is asked for first: a first picture needs none.
+    const Shafts& shafts() const;
 
     // Whether it was built from this scene and pose.
     bool isOf(const std::shared_ptr<const Scene>& scene, const Pose& pose) const {
@@ -37,6 +43,7 @@ private:
         uint32_t firstVertex; // of positions_
     };
     static void passThroughHoles(const RTCFilterFunctionNArguments* arguments);
+    std::vector<Shafts::Triangle> triangles() const;
     void attach(const uint32_t* indices, size_t triangles, size_t firstVertex, size_t vertices, Masked* masked);
 
     std::shared_ptr<const Scene> source_;
@@ -44,6 +51,8 @@ private:
     std::vector<glm::vec3> positions_; // world; opaque primitives, then masked ones, then one of padding
     std::vector<uint32_t> indices_;    // of the opaque triangles
     std::vector<Masked> masked_;
+    mutable std::once_flag shaftsOnce_;
+    mutable std::optional<Shafts> shafts_;
     uint64_t hash_ = 0;
     RTCDevice device_ = nullptr;
     RTCScene scene_ = nullptr;

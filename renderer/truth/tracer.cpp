@@ -8,6 +8,7 @@
 #include <bit>
 #include <cmath>
 #include <limits>
+#include <numeric>
 
 namespace penumbra {
 namespace {
@@ -95,8 +96,17 @@ Tracer::Tracer(const TruthInput& input, const TruthSettings& settings, const Cas
     truth_.standardError.resize(pixels);
     truth_.classes = classesOf(input);
     findPoints();
-    raysForeseen_ = points_.size() * roundedUp(static_cast<uint32_t>(settings.leastSamples));
-    for (uint32_t i = 0; i < points_.size(); ++i) unfinished_.push_back(i);
+    asked_ = points_.size();
+    askAll();
+}
+
+// The least number of rays of every point.
+void Tracer::askAll() {
+    unfinished_.resize(points_.size());
+    std::iota(unfinished_.begin(), unfinished_.end(), 0u);
+    raysForeseen_ = raysTraced_;
+    for (const Point& point : points_)
+        raysForeseen_ += roundedUp(static_cast<uint32_t>(settings_.leastSamples)) - point.rays;
 }
 
 // Points in small squares of pixels, whose rays are near to each other.
@@ -124,9 +134,42 @@ void Tracer::findPoints() {
     };
     const int width = truth_.width, height = truth_.height;
     for (int top = 0; top < height; top += tile)
-        for (int left = 0; left < width; left += tile)
+        for (int left = 0; left < width; left += tile) {
+            squares_.push_back(static_cast<uint32_t>(points_.size()));
             for (int y = top; y < std::min(top + tile, height); ++y)
                 for (int x = left; x < std::min(left + tile, width); ++x) add(static_cast<uint32_t>(y * width + x));
+        }
+    squares_.push_back(static_cast<uint32_t>(points_.size()));
+}
+
+// Of the points whose rays agree so far, those of which every other ray would say the same.
+void Tracer::dropCertain() {
+    const Shafts::Target target(input_.light);
+    std::vector<Sight> sights(points_.size(), Sight::Unknown);
+    crew_.shareOut(squares_.size() - 1, 16, [&](size_t begin, size_t end) {
+        std::array<glm::vec3, tile * tile> origins;
+        std::array<Sight, tile * tile> seen;
+        std::array<uint32_t, tile * tile> points;
+        for (size_t square = begin; square < end; ++square)
+            for (const float psi : {0.0f, 1.0f}) {
+                size_t count = 0;
+                for (uint32_t i = squares_[square]; i < squares_[square + 1]; ++i)
+                    if (const uint32_t pixel = points_[i].pixel;
+                        truth_.psi[pixel] == psi && truth_.classes[pixel] == PixelClass::FacesWholeLight)
+                        points[count] = i, origins[count++] = points_[i].originWorld;
+                casters_.shafts().look(std::span(origins).first(count), target, std::span(seen).first(count));
+                for (size_t k = 0; k < count; ++k) sights[points[k]] = seen[k];
+            }
+    });
+    size_t kept = 0;
+    for (size_t i = 0; i < points_.size(); ++i) {
+        if (sights[i] == Sight::Unknown)
+            points_[kept++] = points_[i];
+        else
+            truth_.standardError[points_[i].pixel] = 0;
+    }
+    points_.erase(points_.begin() + static_cast<ptrdiff_t>(kept), points_.end());
+    askAll();
 }
 
 namespace {
@@ -251,17 +294,16 @@ void Tracer::estimate() {
         }
     });
     truth_.samplesLeast = truth_.samplesMost = points_.empty() ? 0 : static_cast<int>(points_[0].rays);
-    double rays = 0, errors = 0;
+    double errors = 0;
     truth_.penumbraPixels = 0;
     for (const Point& point : points_) {
         truth_.samplesLeast = std::min(truth_.samplesLeast, static_cast<int>(point.rays));
         truth_.samplesMost = std::max(truth_.samplesMost, static_cast<int>(point.rays));
-        rays += point.rays;
         if (!truth_.isPenumbra(point.pixel)) continue;
         errors += truth_.standardError[point.pixel];
         ++truth_.penumbraPixels;
     }
-    truth_.samplesMean = points_.empty() ? 0 : rays / static_cast<double>(points_.size());
+    truth_.samplesMean = asked_ == 0 ? 0 : static_cast<double>(raysTraced_) / static_cast<double>(asked_);
     truth_.meanPenumbraStandardError = truth_.penumbraPixels ? errors / truth_.penumbraPixels : 0;
 }
 
@@ -273,8 +315,12 @@ bool Tracer::plan() {
     const auto least = roundedUp(static_cast<uint32_t>(settings_.leastSamples));
     const auto most = std::max(least, roundedUp(static_cast<uint32_t>(settings_.mostSamples)));
     if (points_.empty()) return false;
-    if (points_[0].rays < least && truth_.samplesLeast < static_cast<int>(least)) {
-        const uint32_t now = static_cast<uint32_t>(truth_.samplesLeast);
+    if (points_[0].rays < least) {
+        const uint32_t now = points_[0].rays;
+        if (now == lanes && settings_.shafts) {
+            dropCertain();
+            if (points_.empty()) return false;
+        }
         const uint32_t step = now == 0 ? lanes : std::min(3 * now, 64u);
         for (Point& point : points_) point.wanted = std::min(now + step, least);
         return true;

@@ -31,6 +31,8 @@ private:
         std::array<uint16_t, truthReplicates> hidden{};
     };
     void findPoints();
+    void askAll();
+    void dropCertain();
     void trace(Point& point) const;
     void estimate();
     bool plan();
@@ -44,9 +46,11 @@ private:
     glm::vec2 halfLight_{0};
     std::vector<float> haltonX_, haltonY_;
     std::vector<Point> points_;        // in small squares of pixels
+    std::vector<uint32_t> squares_;    // the first of the points of each, and their end; before any is dropped
     std::vector<uint32_t> unfinished_; // of points_, this round
     std::vector<float> spread_;        // by pixel; see plan()
     Truth truth_;
+    size_t asked_ = 0; // how many points there were at first
     uint64_t raysTraced_ = 0, raysForeseen_ = 0;
 };
 

@@ -56,6 +56,7 @@ struct TruthSettings {
     int mostSamples = 16384;            // and at most; equal: the same for every pixel
     double wantedStandardError = 0.001; // it ends when the mean over penumbra pixels is below this
     int threads = 0;                    // 0: one per core
+    bool shafts = true;                 // no rays where they can say only one thing; see renderer/truth/shafts.h
     bool background = false;            // threads of low priority, that leave the cores to whoever draws
     TruthCache* cache = nullptr;        // asked first, and given what was traced; app/truth_cache.h has one on disk
 };
@@ -64,10 +65,10 @@ inline constexpr int truthReplicates = 8; // independently shifted Halton sequen
 struct Truth {
     int width = 0, height = 0;        // row 0 at the top, as Renderer::Pixels has it
     std::vector<float> psi;           // ψ* in [0, 1]
-    std::vector<float> standardError; // of psi; 0 where no ray was needed
+    std::vector<float> standardError; // of psi; 0 where rays can say only one thing
     std::vector<PixelClass> classes;
-    int samplesLeast = 0, samplesMost = 0; // rays a pixel that needed any
-    double samplesMean = 0;
+    int samplesLeast = 0, samplesMost = 0; // rays a pixel, of those that only rays can tell of
+    double samplesMean = 0;                // over all that any ray was sent from
     double meanPenumbraStandardError = 0; // over pixels with ψ* in (0.01, 0.99); 0 without any
     int penumbraPixels = 0;
     bool complete = false; // false: a first look, that is still being refined

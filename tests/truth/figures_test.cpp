@@ -5,6 +5,7 @@
 #include "tests/catch.h"
 #include "tests/support/scenes.h"
 
+#include <algorithm>
 #include <chrono>
 #include <cstdlib>
 #include <thread>
@@ -50,8 +51,10 @@ TEST_CASE("what the truth costs at 640x480", "[.][figures]") {
         size_t traced = 0;
         for (const PixelClass kind : truth.classes)
             traced += kind == PixelClass::FacesWholeLight || kind == PixelClass::CutByHorizon;
+        const auto asked = std::count_if(truth.standardError.begin(), truth.standardError.end(),
+                                         [](float error) { return error > 0; });
         WARN(s.scene->name << ": " << s.scene->triangleCount() << " triangles, " << traced << " pixels of "
-                           << truth.classes.size() << " with 256 rays: " << seconds << " s, " << spent
+                           << truth.classes.size() << " with 256 rays (" << asked << " by rays alone): " << seconds << " s, " << spent
                            << " s of processor time, " << 1e9 * spent / (256.0 * static_cast<double>(traced))
                            << " ns a ray; mean penumbra error " << truth.meanPenumbraStandardError);
     }

@@ -63,6 +63,43 @@ TEST_CASE("rays meet the closed forms within 0.01 everywhere with 4096 samples")
     }
 }
 
+TEST_CASE("what shafts tell is what rays tell") {
+    struct View {
+        const char* scene;
+        LightShape shape;
+        float size;
+    };
+    for (const View& view : {View{"courtyard", LightShape::Rectangle, 1}, View{"courtyard", LightShape::Directional, 5},
+                             View{"overlapping-occluders", LightShape::Disk, 1}, View{"two-boxes", LightShape::Disk, 0},
+                             View{"thin-slab", LightShape::Directional, 0}}) {
+        Session s;
+        s.setScene(std::make_shared<const Scene>(importGltf(findScene(view.scene))));
+        s.light.shape = view.shape;
+        if (view.size != 1) s.light.size = glm::vec2(view.size);
+        s.size = {200, 150};
+        const TruthInput input = inputOf(s);
+        TruthSettings settings = exactly(256);
+        const Truth with = traceTruth(input, settings);
+        settings.shafts = false;
+        const Truth rays = traceTruth(input, settings);
+        int known = 0, lit = 0, dark = 0, asked = 0, different = 0;
+        for (size_t i = 0; i < rays.psi.size(); ++i) {
+            if (rays.standardError[i] == 0) continue;
+            ++asked;
+            different += with.psi[i] != rays.psi[i];
+            if (with.standardError[i] != 0) continue;
+            ++known;
+            lit += with.psi[i] == 0, dark += with.psi[i] == 1;
+        }
+        CAPTURE(view.scene, asked, known, lit, dark);
+        CHECK(different == 0);
+        CHECK(known == lit + dark);
+        CHECK(known > asked / 4);
+        CHECK(lit > 0);
+        CHECK(dark > 0);
+    }
+}
+
 TEST_CASE("the standard error says how far off the truth is") {
     // (ψ − exact) / error has Student's distribution of 7 degrees of freedom, whose root mean square is √(7/5) = 1.18.
     // With few samples shares are coarse and it is less.
