@@ -299,6 +299,7 @@ public:
         IMGUI_CHECKVERSION();
         ImGui::CreateContext();
         ImGui::GetIO().IniFilename = nullptr; // written by keepLayout, as a whole
+        ImGui::GetIO().ConfigDragClickToInputText = true;
         ImGui_ImplGlfw_InitForOpenGL(window.get(), true);
         window.hearInput();
         ImGui_ImplOpenGL3_Init("#version 450 core");

@@ -400,7 +400,7 @@ void BufferView::imageRows() {
     const auto name = [&](int channel) {
         return channel < 0 ? ShortText("rgb") : ShortText("{}", channelName(spec_, channel));
     };
-    if (ImGui::BeginCombo("##channel", name(look_.channel).begin())) {
+    if (beginCombo("##channel", name(look_.channel).begin())) {
         for (int c = format.channels >= 3 ? -1 : 0; c < format.channels; ++c) {
             if (ImGui::Selectable(name(c).begin(), c == look_.channel)) look_.channel = c;
             if (const Channel* known = channelOf(spec_, c)) tooltip(known->meaning);
@@ -431,7 +431,7 @@ void BufferView::rangeRows(Inspector& inspector) {
     row("Colours");
     const size_t map = static_cast<size_t>(look_.map);
     ImGui::BeginDisabled(together);
-    if (ImGui::BeginCombo("##colours", together ? "as they are" : colourMapNames[map].data())) {
+    if (beginCombo("##colours", together ? "as they are" : colourMapNames[map].data())) {
         for (size_t i = 0; i < std::size(colourMapNames); ++i) {
             if (ImGui::Selectable(colourMapNames[i].data(), i == map)) look_.map = static_cast<ColourMap>(i);
             tooltip(colourMapHelp[i]);

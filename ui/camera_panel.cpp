@@ -32,7 +32,7 @@ void CameraPanel::draw(Session& session, const SceneFacts& facts, ViewSettings& 
     if (!scene.cameras.empty()) {
         row("Of the scene");
         const bool stands = camera == taken_ && chosen_ < scene.cameras.size();
-        if (ImGui::BeginCombo("##cameras", stands ? nameOf(scene, chosen_).c_str() : "choose…")) {
+        if (beginCombo("##cameras", stands ? nameOf(scene, chosen_).c_str() : "choose…")) {
             for (size_t i = 0; i < scene.cameras.size(); ++i) {
                 ImGui::PushID(static_cast<int>(i));
                 if (ImGui::Selectable(nameOf(scene, i).c_str(), stands && i == chosen_)) choose(session, facts, i);

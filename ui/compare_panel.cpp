@@ -119,7 +119,6 @@ void ComparePanel::strokes(const Keys& keys, Session& session, Yardstick& yardst
         if (!chosen) compare(session, yardstick, last_);
         return chosen;
     };
-    close_ = keys.escape;
     if (keys.truth) wantTruth(session, yardstick, !yardstick.truthWanted);
     if (keys.ruler) view.rulerShown = !view.rulerShown;
     if (keys.alone) compare(session, yardstick, Against::Nothing);
@@ -139,9 +138,8 @@ void ComparePanel::button(Session& session, Yardstick& yardstick, ViewSettings& 
     ImGui::SetNextWindowPos({std::min(ImGui::GetItemRectMin().x, screen - width),
                              ImGui::GetItemRectMax().y + ImGui::GetStyle().FramePadding.y});
     ImGui::SetNextWindowSize({width, 0});
-    if (!ImGui::BeginPopup("compare")) return;
+    if (!beginPopup("compare")) return;
     popup(session, yardstick, view);
-    if (close_) ImGui::CloseCurrentPopup();
     ImGui::EndPopup();
 }
 

@@ -26,7 +26,6 @@ private:
     void truthLine(const Session& session, Yardstick& yardstick);
 
     Against last_ = Against::Truth; // that was compared with
-    bool close_ = false;            // the choices
     std::optional<bool> folded_;    // the numbers, to one line; not chosen yet: in a small view
     RulerPlot plot_;
 };

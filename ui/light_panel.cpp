@@ -51,7 +51,7 @@ void LightPanel::ofScene(Session& session, const SceneFacts& facts) {
     if (scene.lights.empty()) return;
     row("Of the scene");
     const bool stands = session.light == taken_ && chosen_ < scene.lights.size();
-    if (ImGui::BeginCombo("##lights", stands ? nameOf(scene, chosen_).c_str() : "choose…")) {
+    if (beginCombo("##lights", stands ? nameOf(scene, chosen_).c_str() : "choose…")) {
         for (size_t i = 0; i < scene.lights.size(); ++i) {
             ImGui::PushID(static_cast<int>(i));
             if (ImGui::Selectable(nameOf(scene, i).c_str(), stands && i == chosen_)) choose(session, facts, i);
@@ -65,7 +65,7 @@ void LightPanel::ofScene(Session& session, const SceneFacts& facts) {
 void LightPanel::shapeAndSize(AreaLight& light) {
     row("Shape");
     const auto shapes = lightShapeNames();
-    if (ImGui::BeginCombo("##shape", ShortText("{}", shapes[static_cast<size_t>(light.shape)]).begin())) {
+    if (beginCombo("##shape", ShortText("{}", shapes[static_cast<size_t>(light.shape)]).begin())) {
         for (size_t i = 0; i < shapes.size(); ++i)
             if (ImGui::Selectable(ShortText("{}", shapes[i]).begin(), static_cast<size_t>(light.shape) == i))
                 changeShape(light, static_cast<LightShape>(i));

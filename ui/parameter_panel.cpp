@@ -149,7 +149,7 @@ void ParameterPanel::control(Parameter& parameter) {
     }
     case Parameter::Type::Choice: {
         const auto choices = parameter.spec().choices;
-        if (!ImGui::BeginCombo("##choice", ShortText("{}", parameter.text()).begin())) break;
+        if (!beginCombo("##choice", ShortText("{}", parameter.text()).begin())) break;
         for (size_t i = 0; i < choices.size(); ++i)
             if (ImGui::Selectable(ShortText("{}", choices[i]).begin(), parameter.value() == static_cast<double>(i)))
                 parameter.set(static_cast<double>(i));

@@ -49,7 +49,7 @@ void SidePanel::scene(Session& session, const SceneFacts& facts, Requests& reque
         path_.set(scene.file.string());
     }
     row("Scene");
-    if (ImGui::BeginCombo("##built-in", scene.name.c_str())) {
+    if (beginCombo("##built-in", scene.name.c_str())) {
         for (const std::string& name : builtIns_)
             if (ImGui::Selectable(name.c_str(), name == scene.name)) requests.openScene = SceneRequest{name};
         ImGui::EndCombo();
@@ -95,7 +95,7 @@ void SidePanel::choices(const Scene& scene, Requests& requests) {
                               nameOf(scene.variantNames, scene.chosenVariant)};
     if (scene.sceneNames.size() > 1) {
         row("Part");
-        if (ImGui::BeginCombo("##part", chosen.scene.c_str())) {
+        if (beginCombo("##part", chosen.scene.c_str())) {
             for (const std::string& name : scene.sceneNames)
                 if (ImGui::Selectable(name.c_str(), name == chosen.scene)) reopen({name, chosen.variant});
             ImGui::EndCombo();
@@ -105,7 +105,7 @@ void SidePanel::choices(const Scene& scene, Requests& requests) {
     if (!scene.variantNames.empty()) {
         constexpr const char* none = "as modelled";
         row("Variant");
-        if (ImGui::BeginCombo("##variant", chosen.variant.empty() ? none : chosen.variant.c_str())) {
+        if (beginCombo("##variant", chosen.variant.empty() ? none : chosen.variant.c_str())) {
             if (ImGui::Selectable(none, chosen.variant.empty())) reopen({chosen.scene, ""});
             for (const std::string& name : scene.variantNames)
                 if (ImGui::Selectable(name.c_str(), name == chosen.variant)) reopen({chosen.scene, name});
@@ -120,7 +120,7 @@ void timeControls(Session& session, const SceneFacts& facts, Playback& playback)
     if (clips.empty()) return;
     if (clips.size() > 1) {
         row("Clip");
-        if (ImGui::BeginCombo("##clip", clips[session.clip].name.c_str(), ImGuiComboFlags_HeightLarge)) {
+        if (beginCombo("##clip", clips[session.clip].name.c_str(), ImGuiComboFlags_HeightLarge)) {
             for (size_t i = 0; i < clips.size(); ++i) {
                 ImGui::PushID(static_cast<int>(i));
                 if (ImGui::Selectable(clips[i].name.c_str(), i == session.clip)) {
@@ -178,7 +178,7 @@ void SidePanel::chooseEdited(Session& session) {
 void SidePanel::technique(TechniqueShelf& shelf, Requests& requests) {
     const Card& card = shelf.card();
     ImGui::SetNextItemWidth(-FLT_MIN);
-    if (ImGui::BeginCombo("##technique", ShortText("{}", card.title).begin(), ImGuiComboFlags_HeightLarge)) {
+    if (beginCombo("##technique", ShortText("{}", card.title).begin(), ImGuiComboFlags_HeightLarge)) {
         for (const Card* other : catalogue()) {
             if (ImGui::Selectable(ShortText("{}", other->title).begin(), other == &card) && other != &card) {
                 shelf.choose(other->id);
@@ -233,7 +233,7 @@ void SidePanel::presets(const Session& session, Requests& requests) {
 
     row("Preset");
     if (changed) ImGui::PushStyleColor(ImGuiCol_Text, colour::accent);
-    const bool open = ImGui::BeginCombo(
+    const bool open = beginCombo(
         "##presets", chosen ? ShortText("{}{}", preset_, changed ? ", changed" : "").begin() : "choose…",
         ImGuiComboFlags_HeightLarge);
     if (changed) ImGui::PopStyleColor();
@@ -283,7 +283,7 @@ void SidePanel::presets(const Session& session, Requests& requests) {
     const ImVec2 below{ImGui::GetItemRectMin().x, ImGui::GetItemRectMax().y + style.FramePadding.y};
     tooltip(own ? "Delete the file of the chosen preset" : "Only presets of yours can be deleted");
     ImGui::SetNextWindowPos(below);
-    if (ImGui::BeginPopup("delete preset")) {
+    if (beginPopup("delete preset")) {
         text(ShortText("Delete the preset '{}'?", preset_).view());
         if (ImGui::Button("Delete it")) {
             requests.deletePreset = preset_;

@@ -133,23 +133,29 @@ void TradeOffPanel::arrange() {
     stale_ = false;
     arrangedView_ = view;
     shown_.clear();
+    elsewhere_.clear();
     std::vector<double> costs, errors;
     std::vector<TradeOff> all;
     for (size_t i = 0; i < points_.size(); ++i) {
         const MeasuredPoint& point = points_[i];
-        if (point.view != view || point.cost.count == 0) continue;
-        shown_.push_back(i);
+        if (point.cost.count == 0) continue;
+        // The axes hold the points of all views, so that they stay where they are when the camera moves.
         for (const double cost : {point.cost.median, point.cost.interval.low, point.cost.interval.high})
             costs.push_back(cost);
         errors.push_back(errorOf(point));
+        if (point.view != view) {
+            elsewhere_.push_back(i);
+            continue;
+        }
+        shown_.push_back(i);
         all.push_back({point.cost.median, errorOf(point)});
     }
     costAxis_ = fitAxis(costs, logCost_);
     errorAxis_ = fitAxis(errors, logError_);
-    front_ = tradeOffFront(all);
+    const std::vector<bool> front = tradeOffFront(all);
     frontLine_.clear();
     for (size_t i = 0; i < shown_.size(); ++i)
-        if (front_[i]) frontLine_.push_back(shown_[i]);
+        if (front[i]) frontLine_.push_back(shown_[i]);
     std::sort(frontLine_.begin(), frontLine_.end(),
               [&](size_t a, size_t b) { return points_[a].cost.median < points_[b].cost.median; });
 }
@@ -226,7 +232,7 @@ void TradeOffPanel::chart(Session& session, ImVec2 size, bool clean, Requests& r
     const ImVec2 from{corner_.x + 4.4f * em, corner_.y + 1.9f * em}, to{end.x - em, end.y - 2.9f * em};
     if (to.x - from.x < 4 * em || to.y - from.y < 3 * em) return;
     list.PushClipRect(corner_, end, true);
-    if (!shown_.empty()) axes(from, to);
+    if (!shown_.empty() || !elsewhere_.empty()) axes(from, to);
     dots(session, from, to);
 
     pointed_.reset();
@@ -234,9 +240,9 @@ void TradeOffPanel::chart(Session& session, ImVec2 size, bool clean, Requests& r
         float nearest = 0.8f * em;
         const ImVec2 mouse = ImGui::GetIO().MousePos;
         for (const Dot& dot : dots_) {
-            // Dots of what is chosen lie above the others.
-            const float distance =
-                std::hypot(dot.place.x - mouse.x, dot.place.y - mouse.y) - (dot.current ? 0.2f * em : 0);
+            // Dots of this view lie above those of others, and of what is chosen above them all.
+            const float head = dot.current ? 0.4f : dot.here ? 0.2f : 0;
+            const float distance = std::hypot(dot.place.x - mouse.x, dot.place.y - mouse.y) - head * em;
             if (distance < nearest) nearest = distance, pointed_ = dot.point;
         }
     }
@@ -292,9 +298,14 @@ void TradeOffPanel::dots(const Session& session, ImVec2 from, ImVec2 to) {
                       std::lerp(to.y, from.y, static_cast<float>(errorAxis_.position(errorOf(point)))));
     };
     dots_.clear();
-    for (size_t i = 0; i < shown_.size(); ++i) {
-        const MeasuredPoint& point = points_[shown_[i]];
-        dots_.push_back({shown_[i], placeOf(point), isCurrent(point, session), front_[i]});
+    for (const size_t i : elsewhere_) {
+        const ImVec2 place = placeOf(points_[i]);
+        dots_.push_back({.point = i, .place = place, .here = false, .current = false});
+        list.AddCircle(place, 0.2f * em, faded(colour::muted, 0.5f), 0, 0.08f * em);
+    }
+    for (const size_t i : shown_) {
+        const MeasuredPoint& point = points_[i];
+        dots_.push_back({.point = i, .place = placeOf(point), .here = true, .current = isCurrent(point, session)});
     }
     // Up to the next cheapest everything costs what the one before does: a staircase.
     const ImU32 line = faded(colour::accent, 0.75f);
@@ -316,7 +327,7 @@ void TradeOffPanel::dots(const Session& session, ImVec2 from, ImVec2 to) {
     }
     for (const bool current : {false, true})
         for (const Dot& dot : dots_) {
-            if (dot.current != current) continue;
+            if (!dot.here || dot.current != current) continue;
             const MeasuredPoint& point = points_[dot.point];
             const ImVec4 ink = colourOf(point.setting.card);
             if (current) {
@@ -335,7 +346,7 @@ void TradeOffPanel::dots(const Session& session, ImVec2 from, ImVec2 to) {
         }
     if (found_ && found_->proposal)
         for (const Dot& dot : dots_)
-            if (points_[dot.point].setting.parameters() == found_->trials[*found_->proposal].setting.parameters())
+            if (dot.here && points_[dot.point].setting.parameters() == found_->trials[*found_->proposal].setting.parameters())
                 list.AddCircle(dot.place, 0.78f * em, ImGui::GetColorU32(colour::warning), 0, 0.14f * em);
 }
 
@@ -390,6 +401,8 @@ void TradeOffPanel::describe(const MeasuredPoint& point) const {
         line("RMSE", ShortText("{:.4f}", point.rmse));
         line("in penumbrae", ShortText("{:.4f}", point.penumbraRmse));
         line("Textures", bytesText(point.bytes));
+        if (point.view != arrangedView_)
+            line("Of another view", ShortText("{}, {} × {}", point.scene, point.size.x, point.size.y));
         if (point.maps > 1) line("Shadow maps", ShortText("{}", point.maps));
         if (const auto reads = point.setting.technique->readsPerPixel())
             line("Reads a pixel", reads->least == reads->most ? ShortText("{}", reads->most)
@@ -423,10 +436,9 @@ void TradeOffPanel::controls(Session& session, Requests& requests) {
         if (ImGui::Button("Measure all", {-FLT_MIN, 0})) measureAll(session, view_);
         tooltip("Measure the cost and the error of every technique with its present values, in the present view, "
                 "against traced rays");
-        const size_t others = static_cast<size_t>(std::count_if(
-            points_.begin(), points_.end(), [&](const MeasuredPoint& p) { return p.view != arrangedView_; }));
-        if (others > 0)
-            text(colour::muted, ShortText("{} shown; {} of other views", shown_.size(), others).view());
+        if (!elsewhere_.empty())
+            text(colour::muted,
+                 ShortText("{} measured; rings: {} in other views", shown_.size(), elsewhere_.size()).view());
         else
             text(colour::muted, ShortText("{} settings measured", shown_.size()).view());
         tooltip("Errors compare only within one view: the same scene, camera, light, time and size of the picture. "
@@ -508,7 +520,7 @@ void TradeOffPanel::budgetForm(Session& session, Requests& requests) {
 void TradeOffPanel::freeList() {
     const float em = ImGui::GetFontSize();
     ImGui::SetNextWindowSizeConstraints({27 * em, 0}, {FLT_MAX, 30 * em});
-    if (!ImGui::BeginPopup("free")) return;
+    if (!beginPopup("free")) return;
     static const TechniqueShelf shelf; // of declarations
     text(colour::muted, "Techniques to look at; below each what may be turned, and how far");
     for (const Card* card : catalogue()) {

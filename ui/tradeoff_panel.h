@@ -53,10 +53,11 @@ public:
 
 private:
     enum class Error { All, Penumbra };
-    struct Dot { // of a point that is shown
+    struct Dot { // of a point on the chart
         size_t point;
         ImVec2 place;
-        bool current, front;
+        bool here;    // measured in the view that is shown
+        bool current; // of the values that its technique has now
     };
 
     uint64_t viewOf(const Session& session);
@@ -95,8 +96,7 @@ private:
     size_t tried_ = 0;
 
     // The points that are shown, arranged anew when one comes or the view is another.
-    std::vector<size_t> shown_;
-    std::vector<bool> front_; // of the shown ones
+    std::vector<size_t> shown_, elsewhere_; // of this view, and of others
     std::vector<size_t> frontLine_;
     ChartAxis costAxis_, errorAxis_;
     uint64_t arrangedView_ = 0;

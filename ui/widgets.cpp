@@ -96,6 +96,23 @@ void tooltip(std::string_view paragraph) {
     endHelp();
 }
 
+namespace {
+
+// Right after Begin.
+bool unlessEscaped(bool open) {
+    if (open && !ImGui::IsAnyItemActive() && ImGui::IsKeyPressed(ImGui::GetKeyIndex(ImGuiKey_Escape), false))
+        ImGui::CloseCurrentPopup();
+    return open;
+}
+
+} // namespace
+
+bool beginPopup(const char* id) { return unlessEscaped(ImGui::BeginPopup(id)); }
+
+bool beginCombo(const char* id, const char* shown, ImGuiComboFlags flags) {
+    return unlessEscaped(ImGui::BeginCombo(id, shown, flags));
+}
+
 bool toggleButton(const char* label, bool on) {
     if (on) ImGui::PushStyleColor(ImGuiCol_Text, colour::accent);
     const bool pressed = ImGui::Button(label);

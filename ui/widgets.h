@@ -57,6 +57,10 @@ bool pointedAt();
 void beginHelp();
 void endHelp();
 
+// ImGui's popup and combo, which Escape closes too, unless a value is being typed in it.
+bool beginPopup(const char* id);
+bool beginCombo(const char* id, const char* shown, ImGuiComboFlags flags = 0);
+
 // A button that shows whether what it toggles is on.
 bool toggleButton(const char* label, bool on);
 

@@ -406,7 +406,7 @@ void Workspace::pictureMenu() {
     tooltip("What to save, and where");
     const ImVec2 button = ImGui::GetItemRectMin();
     ImGui::SetNextWindowPos({button.x, ImGui::GetItemRectMax().y + ImGui::GetStyle().FramePadding.y});
-    if (!ImGui::BeginPopup("pictures")) return;
+    if (!beginPopup("pictures")) return;
     if (ImGui::MenuItem("The view", "F12")) pictureWanted_ = true;
     if (ImGui::MenuItem("The whole window, with its panels", "Shift+F12")) windowPictureIn_ = 2;
     ImGui::Separator();
