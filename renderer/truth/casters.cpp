@@ -150,15 +150,13 @@ const Shafts& Casters::shafts() const {
 
 std::vector<Shafts::Triangle> Casters::triangles() const {
     std::vector<Shafts::Triangle> all;
-    const auto add = [&](const uint32_t* indices, size_t count, uint32_t firstVertex, bool solid) {
+    const auto add = [&](const uint32_t* indices, size_t count, uint32_t firstVertex) {
         for (size_t i = 0; i < count; i += 3)
-            all.push_back(
-                {{firstVertex + indices[i], firstVertex + indices[i + 1], firstVertex + indices[i + 2]}, solid});
+            all.push_back({firstVertex + indices[i], firstVertex + indices[i + 1], firstVertex + indices[i + 2]});
     };
-    add(indices_.data(), indices_.size(), 0, true);
+    add(indices_.data(), indices_.size(), 0);
     for (const Masked& masked : masked_)
-        add(source_->indices.data() + masked.primitive->firstIndex, masked.primitive->indexCount, masked.firstVertex,
-            false);
+        add(source_->indices.data() + masked.primitive->firstIndex, masked.primitive->indexCount, masked.firstVertex);
     return all;
 }
 

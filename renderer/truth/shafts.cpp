@@ -64,13 +64,16 @@ Shafts::Target::Target(const AreaLight& light)
     }
 }
 
-// The sides of a shaft, inside which n·p + d >= 0. Inside a plane of light space, the sides touch the light at one end
+// The sides of a shaft. Inside a plane of light space, the sides touch the light at one end
 // and the points at the other.
 struct Shafts::Planes {
-    std::array<glm::vec4, 6> planes; // world; unit normals
+    static constexpr size_t lanes = 8;
+    alignas(32) float x[lanes]{}, y[lanes]{}, z[lanes]{}; // unit normals, world
+    alignas(32) float limit[lanes];                       // outside is what n·p is below; of no plane: −∞
     size_t count = 0;
 
     Planes(std::span<const glm::vec3> pointsWorld, const Target& target) {
+        std::fill(std::begin(limit), std::end(limit), -infinity);
         constexpr float far = infinity;
         glm::vec2 least(far), most(-far);
         float nearest = far, farthest = -far;
@@ -103,30 +106,36 @@ struct Shafts::Planes {
         if (!target.directional) add({0, 0, -1, 0}, target);
     }
     void add(glm::vec4 planeLight, const Target& target) {
-        const glm::vec4 plane = planeLight * target.lightFromWorld; // a row
-        planes[count++] = plane / glm::length(glm::vec3(plane));
+        const glm::vec4 row = planeLight * target.lightFromWorld;
+        const glm::vec4 plane = row / glm::length(glm::vec3(row));
+        x[count] = plane.x, y[count] = plane.y, z[count] = plane.z;
+        // What is further out than rounding explains is outside.
+        limit[count++] = -plane.w - margin(std::abs(plane.w));
     }
 
+    // Without branches, so that the loops become vector code.
     bool misses(glm::vec3 low, glm::vec3 high) const {
-        const glm::vec3 middle = 0.5f * (low + high), reach = 0.5f * (high - low);
+        const glm::vec3 m = 0.5f * (low + high), r = 0.5f * (high - low);
         const float slack = margin(largest(glm::max(glm::abs(low), glm::abs(high))));
-        for (size_t i = 0; i < count; ++i) {
-            const glm::vec3 n(planes[i]);
-            if (glm::dot(n, middle) + planes[i].w + glm::dot(glm::abs(n), reach) <
-                -slack - 0x1p-21f * std::abs(planes[i].w))
-                return true;
+        int outside = 0;
+        for (size_t i = 0; i < lanes; ++i) {
+            const float most = x[i] * m.x + y[i] * m.y + z[i] * m.z + std::abs(x[i]) * r.x + std::abs(y[i]) * r.y +
+                               std::abs(z[i]) * r.z;
+            outside |= most + slack < limit[i] ? 1 : 0;
         }
-        return false;
+        return outside != 0;
     }
     bool misses(const std::array<glm::vec3, 3>& v) const {
         const float slack = margin(std::max({largest(v[0]), largest(v[1]), largest(v[2])}));
-        for (size_t i = 0; i < count; ++i) {
-            const glm::vec3 n(planes[i]);
-            if (std::max({glm::dot(n, v[0]), glm::dot(n, v[1]), glm::dot(n, v[2])}) + planes[i].w <
-                -slack - 0x1p-21f * std::abs(planes[i].w))
-                return true;
+        int outside = 0;
+        for (size_t i = 0; i < lanes; ++i) {
+            const float a = x[i] * v[0].x + y[i] * v[0].y + z[i] * v[0].z;
+            const float b = x[i] * v[1].x + y[i] * v[1].y + z[i] * v[1].z;
+            const float c = x[i] * v[2].x + y[i] * v[2].y + z[i] * v[2].z;
+            const float ab = a > b ? a : b;
+            outside |= (ab > c ? ab : c) + slack < limit[i] ? 1 : 0;
         }
-        return false;
+        return outside != 0;
     }
 };
 
@@ -135,9 +144,11 @@ namespace {
 // A triangle that may be in the way.
 struct Candidate {
     std::array<glm::vec3, 3> corners;
-    glm::vec3 normal; // unit, or 0 of one without area
-    bool solid;
+    glm::vec3 normal;  // unit, or 0 of one without area
     int lightSide = 0; // as side(), if all corners of the target are on the same one
+
+    // Then no ray from the point crosses its plane.
+    bool sameSide(glm::vec3 point) const { return lightSide != 0 && side(point) == lightSide; }
 
     // Which side of its plane: 1, −1, or 0 within rounding.
     int side(glm::vec3 p) const {
@@ -161,29 +172,22 @@ int sideOf(const Shafts::Target& target, const Candidate& triangle) {
                : 0;
 }
 
-// How the target lies, as seen from a point, to the planes through the point and the triangle's edges.
-enum class Lies { Across, Inside, Outside };
-Lies seenFrom(glm::vec3 point, const Candidate& triangle, const Shafts::Target& target) {
+// Whether a plane through the point and an edge of the triangle has the triangle on one side, and the target on the other
+// by more than rounding.
+bool beside(glm::vec3 point, const Candidate& triangle, const Shafts::Target& target) {
     std::array<glm::vec3, 3> towards;
     for (size_t i = 0; i < 3; ++i) towards[i] = triangle.corners[i] - point;
-    const float before = std::abs(glm::dot(triangle.normal, towards[0]));
-    bool inside = true;
     for (size_t i = 0; i < 3; ++i) {
         glm::vec3 m = glm::cross(towards[i], towards[(i + 1) % 3]);
         if (glm::dot(m, towards[(i + 2) % 3]) < 0) m = -m;
-        const float length = glm::length(m);
-        int within = 0, beyond = 0;
-        for (const glm::vec4& corner : target.cornersWorld) {
-            const glm::vec3 ray = glm::vec3(corner) - corner.w * point;
-            const float distance = glm::dot(m, ray), slack = 1e-5f * length * glm::length(ray);
-            within += distance > slack, beyond += distance < -slack;
-            // Rays end shortly before the light.
-            if (corner.w != 0 && before > (1 - 0x1p-14f) * std::abs(glm::dot(triangle.normal, ray))) inside = false;
-        }
-        if (beyond == 4) return Lies::Outside;
-        if (within != 4) inside = false;
+        const float slack = 1e-5f * glm::length(m);
+        if (std::all_of(target.cornersWorld.begin(), target.cornersWorld.end(), [&](const glm::vec4& corner) {
+                const glm::vec3 ray = glm::vec3(corner) - corner.w * point;
+                return glm::dot(m, ray) < -slack * glm::length(ray);
+            }))
+            return true;
     }
-    return inside ? Lies::Inside : Lies::Across;
+    return false;
 }
 
 } // namespace
@@ -210,12 +214,9 @@ bool Shafts::gather(std::span<const glm::vec3> points, const Target& target, Can
             if (planes.misses(v)) continue;
             const glm::vec3 n = glm::cross(v[1] - v[0], v[2] - v[0]);
             const float length = glm::length(n);
-            Candidate candidate{v, length > 0 ? n / length : glm::vec3(0), triangle.solid && length > 0};
+            Candidate candidate{v, length > 0 ? n / length : glm::vec3(0)};
             candidate.lightSide = sideOf(target, candidate);
-            if (candidate.lightSide != 0 && std::all_of(points.begin(), points.end(), [&](glm::vec3 point) {
-                    return candidate.side(point) == candidate.lightSide;
-                }))
-                continue;
+            if (std::all_of(points.begin(), points.end(), [&](glm::vec3 p) { return candidate.sameSide(p); })) continue;
             if (found.size() == most) return false;
             found.push_back(candidate);
         }
@@ -223,33 +224,23 @@ bool Shafts::gather(std::span<const glm::vec3> points, const Target& target, Can
     return true;
 }
 
-void Shafts::look(std::span<const glm::vec3> points, const Target& target, std::span<Sight> sights) const {
-    std::fill(sights.begin(), sights.end(), Sight::Unknown);
+void Shafts::look(std::span<const glm::vec3> points, const Target& target, std::span<uint8_t> sees) const {
+    std::fill(sees.begin(), sees.end(), uint8_t(0));
     if (points.empty()) return;
     Candidates candidates;
     if (!gather(points, target, candidates)) {
         if (points.size() == 1) return;
         const size_t half = points.size() / 2;
-        look(points.first(half), target, sights.first(half));
-        look(points.subspan(half), target, sights.subspan(half));
+        look(points.first(half), target, sees.first(half));
+        look(points.subspan(half), target, sees.subspan(half));
         return;
     }
     for (size_t i = 0; i < points.size(); ++i) {
         const Planes planes(points.subspan(i, 1), target);
-        bool free = true;
-        for (const Candidate& triangle : candidates) {
-            const int side = triangle.side(points[i]);
-            if (side != 0 && side == triangle.lightSide) continue; // no ray crosses its plane
-            if (planes.misses(triangle.corners)) continue;
-            const Lies lies = seenFrom(points[i], triangle, target);
-            if (lies == Lies::Outside) continue;
-            free = false;
-            if (lies == Lies::Inside && triangle.solid && side != 0 && side == -triangle.lightSide) {
-                sights[i] = Sight::Nothing;
-                break;
-            }
-        }
-        if (free) sights[i] = Sight::Everything;
+        sees[i] = std::all_of(candidates.begin(), candidates.end(), [&](const Candidate& triangle) {
+            return triangle.sameSide(points[i]) || planes.misses(triangle.corners) ||
+                   beside(points[i], triangle, target);
+        });
     }
 }
 

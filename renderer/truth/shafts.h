@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// What points see of a light without any ray: all of it where no triangle touches the shaft between them and it, nothing
-// where one triangle covers all of it (after Haines and Wallace 1994, Shaft culling for efficient ray-traced radiosity).
+// Which points see the whole light, without any ray: those with no triangle in the shaft between them and it (after
+// Haines and Wallace 1994, Shaft culling for efficient ray-traced radiosity).
 #pragma once
 
 #include "renderer/scene/light.h"
@@ -12,15 +12,10 @@
 
 namespace penumbra {
 
-enum class Sight : uint8_t { Unknown, Everything, Nothing };
-
 // Triangles in a hierarchy of boxes.
 class Shafts {
 public:
-    struct Triangle {
-        std::array<uint32_t, 3> corners; // of the positions
-        bool solid;                      // it has no holes: it can cover a light
-    };
+    using Triangle = std::array<uint32_t, 3>; // corners, of the positions
     // `positionsWorld` [m] must outlive it.
     Shafts(const std::vector<glm::vec3>& positionsWorld, std::vector<Triangle> triangles);
 
@@ -32,9 +27,9 @@ public:
         bool directional;
         std::array<glm::vec4, 4> cornersWorld; // w = 0: directions
     };
-    // Of points that are near to each other and wholly above whose horizon the light is. What is not Unknown is what
-    // every ray to the light says, but for what rounding does at a triangle's very edge.
-    void look(std::span<const glm::vec3> pointsWorld, const Target& target, std::span<Sight> sights) const;
+    // Of points that are near to each other and whose horizons the light is wholly above. Where `sees` becomes 1, every
+    // ray to the light says so, but for what rounding does at a triangle's very edge; where it is 0, nothing is known.
+    void look(std::span<const glm::vec3> pointsWorld, const Target& target, std::span<uint8_t> sees) const;
 
 private:
     struct Box {
@@ -46,7 +41,7 @@ private:
     static constexpr size_t most = 64; // candidates
     struct Candidates;
     bool gather(std::span<const glm::vec3> points, const Target& target, Candidates& found) const;
-    glm::vec3 corner(const Triangle& triangle, size_t i) const { return positions_[triangle.corners[i]]; }
+    glm::vec3 corner(const Triangle& triangle, size_t i) const { return positions_[triangle[i]]; }
 
     const std::vector<glm::vec3>& positions_;
     std::vector<Triangle> triangles_; // in the order of the boxes

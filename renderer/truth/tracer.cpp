@@ -142,31 +142,31 @@ void Tracer::findPoints() {
     squares_.push_back(static_cast<uint32_t>(points_.size()));
 }
 
-// Of the points whose rays agree so far, those of which every other ray would say the same.
+// Of the points whose rays all found the light so far, those of which every ray would. Of those whose rays all hit
+// something it does not pay to know more: their rays end soon.
 void Tracer::dropCertain() {
     const Shafts::Target target(input_.light);
-    std::vector<Sight> sights(points_.size(), Sight::Unknown);
+    std::vector<uint8_t> sees(points_.size());
     crew_.shareOut(squares_.size() - 1, 16, [&](size_t begin, size_t end) {
         std::array<glm::vec3, tile * tile> origins;
-        std::array<Sight, tile * tile> seen;
+        std::array<uint8_t, tile * tile> seesAll;
         std::array<uint32_t, tile * tile> points;
-        for (size_t square = begin; square < end; ++square)
-            for (const float psi : {0.0f, 1.0f}) {
-                size_t count = 0;
-                for (uint32_t i = squares_[square]; i < squares_[square + 1]; ++i)
-                    if (const uint32_t pixel = points_[i].pixel;
-                        truth_.psi[pixel] == psi && truth_.classes[pixel] == PixelClass::FacesWholeLight)
-                        points[count] = i, origins[count++] = points_[i].originWorld;
-                casters_.shafts().look(std::span(origins).first(count), target, std::span(seen).first(count));
-                for (size_t k = 0; k < count; ++k) sights[points[k]] = seen[k];
-            }
+        for (size_t square = begin; square < end; ++square) {
+            size_t count = 0;
+            for (uint32_t i = squares_[square]; i < squares_[square + 1]; ++i)
+                if (const uint32_t pixel = points_[i].pixel;
+                    truth_.psi[pixel] == 0 && truth_.classes[pixel] == PixelClass::FacesWholeLight)
+                    points[count] = i, origins[count++] = points_[i].originWorld;
+            casters_.shafts().look(std::span(origins).first(count), target, std::span(seesAll).first(count));
+            for (size_t k = 0; k < count; ++k) sees[points[k]] = seesAll[k];
+        }
     });
     size_t kept = 0;
     for (size_t i = 0; i < points_.size(); ++i) {
-        if (sights[i] == Sight::Unknown)
-            points_[kept++] = points_[i];
-        else
+        if (sees[i])
             truth_.standardError[points_[i].pixel] = 0;
+        else
+            points_[kept++] = points_[i];
     }
     points_.erase(points_.begin() + static_cast<ptrdiff_t>(kept), points_.end());
     askAll();

@@ -82,21 +82,18 @@ TEST_CASE("what shafts tell is what rays tell") {
         const Truth with = traceTruth(input, settings);
         settings.shafts = false;
         const Truth rays = traceTruth(input, settings);
-        int known = 0, lit = 0, dark = 0, asked = 0, different = 0;
+        int known = 0, asked = 0, lit = 0, different = 0;
         for (size_t i = 0; i < rays.psi.size(); ++i) {
             if (rays.standardError[i] == 0) continue;
             ++asked;
             different += with.psi[i] != rays.psi[i];
-            if (with.standardError[i] != 0) continue;
-            ++known;
-            lit += with.psi[i] == 0, dark += with.psi[i] == 1;
+            lit += rays.psi[i] == 0;
+            known += with.standardError[i] == 0;
         }
-        CAPTURE(view.scene, asked, known, lit, dark);
+        CAPTURE(view.scene, asked, known, lit);
         CHECK(different == 0);
-        CHECK(known == lit + dark);
-        CHECK(known > asked / 4);
-        CHECK(lit > 0);
-        CHECK(dark > 0);
+        CHECK(known > 0.8 * lit);
+        CHECK(lit > asked / 10);
     }
 }
 
