@@ -207,6 +207,7 @@ Frame buildFrame(Flow& flow, const Session& session, const SceneState& state, co
     // once.
     const bool lit = session.display.show == Show::Lit;
     const auto build = [&](const TechniqueShelf& shelf, std::string_view instance) {
+        shelf.parameters().refuseBeyondLimits();
         return shelf.technique().build(flow, {instance, shelf.card().id}, inputs);
     };
     const Image shadow = build(session.techniques, two ? "a" : "");

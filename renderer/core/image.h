@@ -10,7 +10,7 @@
 
 namespace penumbra {
 
-enum class Format : uint8_t { RGBA8, RGBA16Snorm, R16F, RG16F, RGBA16F, R32F, RG32F, RGBA32F, Depth32F };
+enum class Format : uint8_t { RGBA8, RG16, RGBA16, RGBA16Snorm, R16F, RG16F, RGBA16F, R32F, RG32F, RGBA32F, Depth32F };
 
 struct FormatInfo {
     std::string_view name; // as OpenGL calls it, without the prefix

@@ -70,7 +70,7 @@ std::string Parameter::qualifiedName() const {
 double Parameter::defaultValue() const { return spec_.defaultFrom ? spec_.defaultFrom(set_) : spec_.value; }
 
 void Parameter::set(double value) {
-    if (!std::isfinite(value) || value < spec_.min || value > spec_.max || nearest(value) != value)
+    if (!std::isfinite(value) || value < spec_.min || value > spec_.max || onStep(value, spec_.max) != value)
         throw InputError(fmt::format("{}: {} is not in {}", qualifiedName(),
                                      type_ == Type::Real ? fmt::format("{:.9g}", value) : fmt::format("{:g}", value),
                                      rangeText()));
@@ -121,15 +121,18 @@ std::string Parameter::rangeText() const {
     return range;
 }
 
-double Parameter::nearest(double value) const {
-    if (std::isnan(value)) return defaultValue();
-    value = std::clamp(value, spec_.min, spec_.max);
+double Parameter::limit() const { return spec_.limitFrom ? std::min(spec_.limitFrom(set_), spec_.max) : spec_.max; }
+
+double Parameter::onStep(double value, double max) const {
+    value = std::clamp(value, spec_.min, max);
     if (spec_.step > 0) {
         value = spec_.min + std::round((value - spec_.min) / spec_.step) * spec_.step;
-        if (value > spec_.max) value -= spec_.step;
+        if (value > max) value -= spec_.step;
     }
     return value;
 }
+
+double Parameter::nearest(double value) const { return std::isnan(value) ? defaultValue() : onStep(value, limit()); }
 
 uint32_t Parameter::bits() const {
     if (type_ == Type::Real) return std::bit_cast<uint32_t>(static_cast<float>(value()));
@@ -147,6 +150,13 @@ Parameter& ParameterSet::at(std::string_view id) const {
     for (const Parameter* p : all_) names.push_back(p->spec().id);
     throw InputError(
         fmt::format("{} has no parameter '{}'{}", owner_.empty() ? "this set" : owner_, id, suggestion(id, names)));
+}
+
+void ParameterSet::refuseBeyondLimits() const {
+    for (const Parameter* p : all_)
+        if (p->value() > p->limit())
+            throw InputError(fmt::format("{}: {} is beyond its limit of {:g}, {}", p->qualifiedName(), p->text(),
+                                         p->limit(), p->spec().limitReason));
 }
 
 void ParameterSet::reset() {

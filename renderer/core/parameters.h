@@ -50,6 +50,10 @@ struct Spec {
 
     // A default that depends on other parameters (α by format); null: `value`.
     double (*defaultFrom)(const ParameterSet&) = nullptr;
+    // The largest value that other parameters leave it (an exponent, by the format that holds its power); null: `max`.
+    // It may be set beyond, since they may be set after it; a frame is then refused, and says why.
+    double (*limitFrom)(const ParameterSet&) = nullptr;
+    std::string_view limitReason = {};
     // Whether it has an effect at the moment, and what to say if not; null: always.
     bool (*active)(const ParameterSet&) = nullptr;
     std::string_view inactiveReason = {};
@@ -73,6 +77,7 @@ public:
     double value() const { return value_ ? *value_ : defaultValue(); }
     double defaultValue() const;
     bool changed() const { return value_ && *value_ != defaultValue(); }
+    double limit() const; // the largest value that a frame may be drawn with
     bool active() const { return !spec_.active || spec_.active(set_); }
 
     // Throws InputError with name, value and range if `value` is not a number, out of range or off the step.
@@ -85,13 +90,14 @@ public:
     std::string textOf(double value) const;
     std::string rangeText() const; // "1..63 texels, odd" or "box, gaussian, poisson"
 
-    // The value nearest to `value` that set() accepts.
+    // The value nearest to `value` that set() accepts and a frame may be drawn with.
     double nearest(double value) const;
     // The 4 bytes of the uniform: float for Real, int for the others.
     uint32_t bits() const;
 
 private:
     friend class ParameterSet;
+    double onStep(double value, double max) const;
     ParameterSet& set_;
     Type type_;
     Spec spec_;
@@ -135,6 +141,8 @@ public:
     Parameter* find(std::string_view id) const;
     // Throws InputError that names the nearest parameter.
     Parameter& at(std::string_view id) const;
+    // Throws InputError that names a parameter which is beyond its limit.
+    void refuseBeyondLimits() const;
     void reset();
     void copyValuesFrom(const ParameterSet& other);   // same declaration
     bool operator==(const ParameterSet& other) const; // same owner, same values

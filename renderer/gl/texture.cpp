@@ -10,6 +10,8 @@ namespace penumbra {
 GlFormat glFormat(Format format) {
     static constexpr GlFormat table[] = {
         {GL_RGBA8, GL_RGBA, GL_FLOAT},
+        {GL_RG16, GL_RG, GL_FLOAT},
+        {GL_RGBA16, GL_RGBA, GL_FLOAT},
         {GL_RGBA16_SNORM, GL_RGBA, GL_FLOAT},
         {GL_R16F, GL_RED, GL_FLOAT},
         {GL_RG16F, GL_RG, GL_FLOAT},

@@ -12,7 +12,6 @@ using glm::vec3;
 
 constexpr float nearestShare = 1e-4f;  // the near plane is never nearer than this share of the far one
 constexpr float widestTangent = 5.67f; // a perspective map opens to 80° on either side of the axis
-constexpr int borderTexels = 1;        // stays empty: a lookup outside is clamped to it and finds no caster
 
 // An axis-aligned rectangle on the reference plane [m].
 struct Window {
@@ -120,7 +119,7 @@ LightViewBlock lightView(const Inputs& inputs, const ShadowMapDescription& descr
     // Square texels, and a border of empty ones, whole after a shift too.
     const vec2 extent = fit.window.max - fit.window.min;
     const float side = std::max(extent.x, extent.y);
-    const int filled = size - 2 * borderTexels - (description.shift != vec2(0) ? 1 : 0);
+    const int filled = size - 2 * description.border - (description.shift != vec2(0) ? 1 : 0);
     const float h = 0.5f * side * static_cast<float>(size) / static_cast<float>(std::max(filled, 1));
     const vec2 centre =
         0.5f * (fit.window.min + fit.window.max) + description.shift * (2 * h / static_cast<float>(size));
@@ -196,7 +195,7 @@ ShadowMap drawShadowMap(Flow& flow, Scope scope, const Inputs& inputs, const Sha
               .faces = nearestOnly ? Faces::Nearest : description.faces,
               .castersOnly = true,
               .depthClamp = true,
-              .border = borderTexels,
+              .border = description.border,
               .clear = {1, 1, 1, 1}};
     // The rasteriser's depth of an orthographic map is the stored depth already.
     if (view.sample_reference.w == 0) draw.defines.push_back({view.range.w != 0 ? "RADIAL" : "LINEAR_DEPTH"});

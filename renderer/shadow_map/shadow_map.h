@@ -27,6 +27,7 @@ struct ShadowMapDescription {
     // Moves the grid of texels by at most half a texel: without it all maps of a light have the same grid on the
     // reference plane, and the mean of many keeps the rounding of each.
     glm::vec2 shift{0, 0};
+    int border = 1; // texels along the edge that stay empty: a lookup outside is clamped to them and finds no caster
     bool signMovers = false; // depth is negative where a caster's pose differs from the last frame's; needs R32F
 };
 inline constexpr int mostLayers = 8;
@@ -65,6 +66,7 @@ struct ShadowMapParameters : ParameterGroup {
 struct BiasParameters : ParameterGroup {
     struct Defaults {
         double slope, normalOffset;
+        double (*slopeFrom)(const ParameterSet&) = nullptr; // where the slope bias hangs on other parameters
     };
     BiasParameters(ParameterSet& s, Defaults defaults)
         : ParameterGroup(s, "Bias")
@@ -89,7 +91,8 @@ struct BiasParameters : ParameterGroup {
                  .unit = Unit::Texels,
                  .source = "King 2004; OpenGL polygon offset",
                  .help = "Depth by which the receiver's plane rises over this many texels. Half a texel removes acne "
-                         "from planes that are compared at their own depth; surfaces that graze the light then leak."}}
+                         "from planes that are compared at their own depth; surfaces that graze the light then leak.",
+                 .defaultFrom = defaults.slopeFrom}}
         , normalOffset{set,
                        {.id = "normal-offset",
                         .label = "Normal offset",

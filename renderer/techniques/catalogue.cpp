@@ -12,7 +12,13 @@
     X(pcf)                                                                                                             \
     X(pcss)                                                                                                            \
     X(lightSampling)                                                                                                   \
-    X(temporal)
+    X(temporal)                                                                                                        \
+    X(vsm)                                                                                                             \
+    X(esm)                                                                                                             \
+    X(evsm)                                                                                                            \
+    X(msmHamburger)                                                                                                    \
+    X(msmHausdorff)                                                                                                    \
+    X(msmTrigonometric)
 
 namespace penumbra {
 

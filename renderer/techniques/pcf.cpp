@@ -4,9 +4,9 @@
 //     ψ = Σ_k w_k [z_k < z_r(k)] / Σ_k w_k
 //
 // over the texels k of a kernel around the receiver, z_r(k) the depth of the receiver's own plane at texel k.
-// Box and Gaussian of n x n texels: (n + 1)² texture reads a pixel, four to a gather; the bilinear weights are folded into
-// the kernel's, which is the same sum as n² hardware 2x2 comparisons. Poisson: as many as there are taps, four times that
-// with bilinear comparison.
+// Box and Gaussian of n x n texels: (n + 1)² texture reads a pixel, four to a gather; the bilinear weights are folded
+// into the kernel's, which is the same sum as n² hardware 2x2 comparisons. Poisson: as many as there are taps, four
+// times that with bilinear comparison.
 #include "renderer/core/technique.h"
 #include "renderer/shadow_map/poisson_disk.h"
 #include "renderer/shadow_map/shadow_map.h"

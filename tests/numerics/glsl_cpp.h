@@ -42,18 +42,38 @@ auto min(A a, B b) {
     using T = std::common_type_t<A, B>;
     return T(b) < T(a) ? T(b) : T(a);
 }
+template <class A, class B, class C>
+requires Numbers<A, B> && std::is_arithmetic_v<C>
+auto clamp(A a, B low, C high) { return min(max(a, low), high); }
 using glm::abs;
+using glm::acos;
+using glm::atan;
 using glm::cos;
 using glm::cross;
 using glm::dot;
 using glm::floor;
 using glm::fract;
+using glm::inversesqrt;
 using glm::length;
 using glm::normalize;
 using glm::sin;
 using glm::sqrt;
 using uint = uint32_t;
 } // namespace builtins
+
+// GLSL's fma() may be one rounding or two. Of a function that has it there are both.
+namespace unfused {
+template <class A, class B, class C> auto fma(A a, B b, C c) {
+    using T = std::common_type_t<A, B, C>;
+    return T(a) * T(b) + T(c);
+}
+} // namespace unfused
+namespace fused {
+template <class A, class B, class C> auto fma(A a, B b, C c) {
+    using T = std::common_type_t<A, B, C>;
+    return std::fma(T(a), T(b), T(c));
+}
+} // namespace fused
 
 namespace f32 {
 using namespace builtins;
@@ -67,7 +87,20 @@ using vec4 = glm::vec<4, float>;
 #include "shaders/lib/srgb.glsl"
 #include "shaders/lib/temporal.glsl"
 #include "shaders/lib/colour_map.glsl"
+using namespace unfused;
+#include "shaders/lib/moments.glsl"
+#include "shaders/lib/moments_trigonometric.glsl"
 } // namespace f32
+
+namespace f32fused {
+using namespace builtins;
+using namespace fused;
+using vec2 = glm::vec<2, float>;
+using vec3 = glm::vec<3, float>;
+using vec4 = glm::vec<4, float>;
+#include "shaders/lib/moments.glsl"
+#include "shaders/lib/moments_trigonometric.glsl"
+} // namespace f32fused
 
 #define float double
 namespace f64 {
@@ -82,6 +115,9 @@ using vec4 = glm::vec<4, double>;
 #include "shaders/lib/srgb.glsl"
 #include "shaders/lib/temporal.glsl"
 #include "shaders/lib/colour_map.glsl"
+using namespace fused;
+#include "shaders/lib/moments.glsl"
+#include "shaders/lib/moments_trigonometric.glsl"
 } // namespace f64
 #undef float
 

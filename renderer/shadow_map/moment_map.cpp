@@ -1,0 +1,191 @@
+// SPDX-License-Identifier: MIT
+#include "renderer/shadow_map/moment_map.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace penumbra {
+namespace {
+
+using glm::dmat4;
+using glm::dvec4;
+
+// Weights of the centre and of those beside it on one side; all, on both sides, sum to 1.
+struct Gaussian {
+    int half;
+    double weights[mostKernel / 2 + 1] = {};
+    Gaussian(int kernel, double sigma) : half(kernel / 2) {
+        double sum = 0;
+        for (int i = 0; i <= half; ++i) {
+            weights[i] = std::exp(-i * i / (2 * sigma * sigma));
+            sum += (i == 0 ? 1 : 2) * weights[i];
+        }
+        for (double& w : weights) w /= sum;
+    }
+    double variance() const {
+        double sum = 0;
+        for (int i = 1; i <= half; ++i) sum += 2 * weights[i] * i * i;
+        return sum;
+    }
+};
+
+dmat4 fromRows(dvec4 a, dvec4 b, dvec4 c, dvec4 d) { return glm::transpose(dmat4(a, b, c, d)); }
+
+// How power moments are stored.
+struct Encoding {
+    dmat4 matrix{1};
+    dvec4 offset{0};
+};
+
+// From [−1, 1] to [0, 1] for odd powers.
+const Encoding signedPlain{fromRows({0.5, 0, 0, 0}, {0, 1, 0, 0}, {0, 0, 0.5, 0}, {0, 0, 0, 1}), {0.5, 0, 0.5, 0}};
+
+// θ2 and θ4 of Peters and Klein 2015, section 4.3: of all affine maps of the moment curve into the unit cube those of
+// the greatest determinant, 2² and 2^12.28.
+const Encoding theta2{fromRows({1, 0, 0, 0}, {4, -4, 0, 0}, {0, 0, 1, 0}, {0, 0, 0, 1}), dvec4(0)};
+const Encoding theta4{
+    fromRows({-2.07224649, 32.2370378, -68.5710746, 39.3703274}, {13.7948857, -59.4683976, 82.035975, -35.3649032},
+             {0.105877704, -1.90774663, 9.34965551, -6.65434907}, {9.79240621, -33.76521106, 47.9456097, -23.9728048}),
+    {0.0359558848, 0, 0, 0}};
+// Peters et al. 2017, of moments in [−1, 1]: odd and even powers apart. Two of them are stored at their best as they
+// are.
+const double root3 = std::sqrt(3.0);
+const Encoding signedTheta4{
+    fromRows({1.5, 0, -2, 0}, {0, 4, 0, -4}, {root3 / 2, 0, -2 * root3 / 9, 0}, {0, 0.5, 0, 0.5}), {0.5, 0, 0.5, 0}};
+
+Encoding encoding(int count, MomentFormat format, DepthSign sign) {
+    const bool isSigned = sign == DepthSign::Signed;
+    switch (format) {
+    case MomentFormat::Float32:
+    case MomentFormat::Float16: return {};
+    case MomentFormat::Unorm16: return isSigned ? signedPlain : Encoding{};
+    case MomentFormat::Unorm16Optimised:
+        if (count == 2) return isSigned ? signedPlain : theta2;
+        return isSigned ? signedTheta4 : theta4;
+    }
+    return {};
+}
+
+Format textureFormat(int count, MomentFormat format) {
+    switch (format) {
+    case MomentFormat::Float32: return count == 2 ? Format::RG32F : Format::RGBA32F;
+    case MomentFormat::Float16: return count == 2 ? Format::RG16F : Format::RGBA16F;
+    case MomentFormat::Unorm16:
+    case MomentFormat::Unorm16Optimised: return count == 2 ? Format::RG16 : Format::RGBA16;
+    }
+    return {};
+}
+
+// The moments that the moment bias mixes in, and what their distribution leaves of D22 and D33 where there is but a
+// single surface. With two atoms at the ends of [0, 1] that is, of D33, up to 1/16 in the middle and 0 at the ends,
+// where rounding would decide: an eighth of it is kept.
+struct BiasTarget {
+    dvec4 moments;
+    double variance, pivot;
+};
+
+BiasTarget biasTarget(MomentFormat format, DepthSign sign) {
+    if (sign == DepthSign::Unsigned) return {dvec4(0.5), 0.25, 1.0 / 128};
+    const double even = format == MomentFormat::Float32 ? 0.375 : 0.628;
+    return {{0, even, 0, even}, even, even * (1 - even)};
+}
+
+glm::vec2 depthScale(DepthSign sign) { return sign == DepthSign::Signed ? glm::vec2(2, -1) : glm::vec2(1, 0); }
+
+} // namespace
+
+double planeDeviation(const ParameterSet& set) {
+    const Gaussian gaussian(static_cast<int>(set.at("kernel").value()), set.at("sigma").value());
+    constexpr double bilinear = 0.25; // variance at most
+    return std::sqrt(gaussian.variance() + bilinear);
+}
+
+bool isHalf(const ParameterSet& set) { return set.at("format").value() == double(FloatFormat::Float16); }
+
+double MomentBias::usual(const ParameterSet& set) {
+    const auto format = static_cast<MomentFormat>(static_cast<int>(set.at("format").value()));
+    const auto sign = static_cast<DepthSign>(static_cast<int>(set.at("depth-range").value()));
+    if (format == MomentFormat::Float32) return sign == DepthSign::Signed ? 3e-7 : 2e-6;
+    return sign == DepthSign::Signed ? 6e-5 : 3e-5;
+}
+
+MomentMapDescription describePowers(int count, const ShadowMapDescription& map, const KernelParameters& kernel,
+                                    const MomentParameters& moments) {
+    static constexpr Channel channels[] = {{"b1", "b₁", "mean of the depth, as the format stores it"},
+                                           {"b2", "b₂", "mean of its square"},
+                                           {"b3", "b₃", "mean of its third power"},
+                                           {"b4", "b₄", "mean of its fourth power"}};
+    const Encoding stored = encoding(count, moments.format, moments.depthSign);
+    return {.map = map,
+            .kernel = kernel.kernel,
+            .sigma = kernel.sigma,
+            .format = textureFormat(count, moments.format),
+            .depth = depthScale(moments.depthSign),
+            .storedFromMoments = stored.matrix,
+            .storedOffset = stored.offset,
+            .channels = std::span(channels).first(static_cast<size_t>(count))};
+}
+
+MomentLookupBlock lookupOfPowers(int count, const MomentParameters& moments, double alpha) {
+    const Encoding stored = encoding(count, moments.format, moments.depthSign);
+    const BiasTarget target = biasTarget(moments.format, moments.depthSign);
+    const dmat4 inverse = (1 - alpha) * glm::inverse(stored.matrix);
+    // Below this a float's rounding says more than the moments.
+    constexpr double leastVariance = 1e-7, leastPivot = 1e-9;
+    return {.momentsFromStored = glm::mat4(inverse),
+            .momentsOffset = glm::vec4(alpha * target.moments - inverse * stored.offset),
+            .depth_exponents = glm::vec4(depthScale(moments.depthSign), 0, 0),
+            .range = glm::vec4(moments.depthSign == DepthSign::Signed ? -1 : 0, 1,
+                               std::max(alpha * target.variance, leastVariance),
+                               std::max(alpha * target.pivot, leastPivot))};
+}
+
+MomentMap drawMomentMap(Flow& flow, Scope scope, const Inputs& inputs, const MomentMapDescription& description) {
+    const Gaussian gaussian(description.kernel, description.sigma);
+    ShadowMapDescription bordered = description.map;
+    // Filtered, casters reach beyond themselves; the map's edge still is empty.
+    bordered.border += std::min(gaussian.half, bordered.size / 4);
+    const ShadowMap map = drawShadowMap(flow, scope, inputs, bordered);
+
+    MomentFilterBlock block{.storedFromMoments = glm::mat4(description.storedFromMoments),
+                            .storedOffset = glm::vec4(description.storedOffset),
+                            .depth_exponents = glm::vec4(description.depth, description.exponents),
+                            .kernel = {gaussian.half, 0, 0, 0},
+                            .weights = {}};
+    for (int i = 0; i <= gaussian.half; ++i) block.weights[i / 4][i % 4] = static_cast<float>(gaussian.weights[i]);
+    const Extent extent{.width = description.map.size, .height = description.map.size};
+    const bool encoded = description.storedFromMoments != dmat4(1) || description.storedOffset != dvec4(0);
+    const auto filter = [&](std::string_view name, Image source, bool fromDepth, bool rows) {
+        Compute work{"moment_map.glsl", {}};
+        if (fromDepth) work.defines.push_back({"FROM_DEPTH"});
+        if (fromDepth) work.defines.push_back({"FUNCTIONS", static_cast<int>(description.functions)});
+        if (fromDepth && encoded) work.defines.push_back({"ENCODED"});
+        if (rows) work.defines.push_back({"ROWS"});
+        return Image(flow.pass(scope, {.stage = Stage::Prefilter,
+                                       .name = name,
+                                       .work = work,
+                                       .reads = {{"source", source}},
+                                       .writes = {{name, description.format, extent, description.channels}},
+                                       .constants = block}));
+    };
+    const bool wide = gaussian.half > 0;
+    const Image source = wide ? filter("moments-of-rows", map.depth, true, true) : map.depth;
+    MomentMap result{filter("moments", source, !wide, false), map.depth, map.view, {}};
+    std::copy(std::begin(block.weights), std::end(block.weights), result.weights);
+    return result;
+}
+
+Image resolveMoments(Flow& flow, Scope scope, const Inputs& inputs, std::string_view shader, const MomentMap& map,
+                     const MomentLookupBlock& lookup, const ParameterSet& parameters, bool withDepths) {
+    struct Block {
+        ResolveConstants resolve;
+        MomentLookupBlock lookup;
+    } block{resolveConstants(inputs, map.view), lookup};
+    std::copy(std::begin(map.weights), std::end(map.weights), block.lookup.weights);
+    const Resolver resolver{.shader = shader, .constants = block};
+    const Read moments{"moments", map.moments, Sampling::Linear};
+    if (withDepths) return resolve(flow, scope, inputs, resolver, {moments, {"shadowMap", map.depth}}, parameters);
+    return resolve(flow, scope, inputs, resolver, {moments}, parameters);
+}
+
+} // namespace penumbra

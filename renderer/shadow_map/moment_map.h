@@ -1,0 +1,150 @@
+// SPDX-License-Identifier: MIT
+// Filterable shadow maps: a shadow map turned into functions of its depths, such as their powers, and filtered by a
+// separable Gaussian. One lookup then tells what all depths of a kernel have in common.
+#pragma once
+
+#include "renderer/shadow_map/shadow_map.h"
+
+namespace penumbra {
+
+using glm::vec3;
+#include "shaders/shared/moments.glsl.h"
+static_assert(sizeof(MomentFilterBlock) == 240 && sizeof(MomentLookupBlock) == 240);
+
+struct KernelParameters : ParameterGroup {
+    explicit KernelParameters(ParameterSet& s) : ParameterGroup(s, "Kernel") {}
+    Integer kernel{set,
+                   {.id = "kernel",
+                    .label = "Kernel size",
+                    .value = 9,
+                    .min = 1,
+                    .max = mostKernel,
+                    .step = 2,
+                    .unit = Unit::Texels,
+                    .source = "Peters and Klein 2015, section 5 (9x9)",
+                    .help = "Width of the Gaussian that the map is filtered with. Softer edges of the same width "
+                            "everywhere; the cost grows with it for each texel of the map, not for each pixel."}};
+    Real sigma{set,
+               {.id = "sigma",
+                .label = "Standard deviation",
+                .symbol = "σ",
+                .value = 2.4,
+                .min = 0.1,
+                .max = 32,
+                .unit = Unit::Texels,
+                .scale = Scale::Logarithmic,
+                .source = "Peters and Klein 2015, section 5 (σ 2.4)",
+                .help = "Of the Gaussian. Much below a quarter of the kernel the outer texels are read for nothing; "
+                        "much above it the kernel becomes a box.",
+                .active = [](const ParameterSet& p) { return p.at("kernel").value() > 1; },
+                .inactiveReason = "a kernel of one texel has none"}};
+    End end{set};
+};
+
+// Where the kernel's σ and that of bilinear sampling put a plane's depths: within so many texels of the receiver's own.
+// A bound of four moments is 0 up to one σ before their mean if they are symmetric about it.
+double planeDeviation(const ParameterSet& set);
+
+enum class MomentFormat { Float32, Float16, Unorm16, Unorm16Optimised };
+inline constexpr std::string_view momentFormatNames[] = {"32f", "16f", "unorm16", "unorm16-optimised"};
+
+// Which depths the moments are of: z in [0, 1], or 2z − 1 in [−1, 1].
+enum class DepthSign { Unsigned, Signed };
+inline constexpr std::string_view depthSignNames[] = {"unsigned", "signed"};
+
+// Of techniques that keep powers of the depth.
+struct MomentParameters : ParameterGroup {
+    MomentParameters(ParameterSet& s, MomentFormat usual)
+        : ParameterGroup(s, "Moments")
+        , format{set,
+                 {.id = "format",
+                  .value = double(usual),
+                  .source = "Peters and Klein 2015, section 4.3",
+                  .help = "How a texel keeps its moments. 32f needs the least bias and twice the memory of the others: "
+                          "unorm16-optimised spreads the moments over all of the 16 bits, plain unorm16 and 16f show "
+                          "what happens without.",
+                  .choices = momentFormatNames}}
+        , depthSign{set,
+                    {.id = "depth-range",
+                     .label = "Depth range",
+                     .value = double(DepthSign::Unsigned),
+                     .source = "unsigned: Peters and Klein 2015; signed: Peters et al. 2017",
+                     .help = "Moments of depths in [0, 1] or in [−1, 1]. The latter are known more exactly, above all "
+                             "in the middle, and need less bias.",
+                     .choices = depthSignNames}} {}
+    Choice<MomentFormat> format;
+    Choice<DepthSign> depthSign;
+    End end{set};
+};
+
+// Of techniques whose values only floats can hold.
+enum class FloatFormat { Float32, Float16 };
+struct FloatFormatChoice : Choice<FloatFormat> {
+    explicit FloatFormatChoice(ParameterSet& set)
+        : Choice(
+              set,
+              {.id = "format",
+               .value = 0,
+               .help = "How a texel keeps its values. 16f takes half of the memory and allows much smaller exponents.",
+               .choices = names}) {}
+    static constexpr std::string_view names[] = {"32f", "16f"};
+};
+bool isHalf(const ParameterSet& set);
+
+// Of techniques that solve a moment problem of four powers.
+struct MomentBias : Real {
+    explicit MomentBias(ParameterSet& set)
+        : Real(set,
+               {.id = "moment-bias",
+                .label = "Moment bias",
+                .symbol = "α",
+                .min = 0,
+                .max = 1e-2,
+                .scale = Scale::Logarithmic,
+                .smallest = 1e-8,
+                .source = "Peters and Klein 2015, section 4.2 (2e-6 at 32 bits, 3e-5 at 16); signed: Peters et al. "
+                          "2017 (3e-7, 6e-5)",
+                .help = "Share of a fixed distribution that is mixed into the moments, so that rounding cannot make "
+                        "them impossible. Too little speckles lit surfaces, too much lets light through at contacts.",
+                .defaultFrom = usual}) {}
+    static double usual(const ParameterSet& set);
+};
+
+// What is stored for a depth x: its powers; exp(e1 x); p = exp(e1 x), p², n = −exp(−e2 x), n²; or sin and cos of 2πx
+// and 4πx.
+enum class DepthFunctions { Powers, Exponential, Exponentials, Trigonometric };
+
+struct MomentMapDescription {
+    ShadowMapDescription map;
+    int kernel = 1;
+    float sigma = 1;
+    DepthFunctions functions = DepthFunctions::Powers;
+    Format format = Format::RGBA32F;
+    glm::vec2 depth{1, 0};     // the functions are of depth.x z + depth.y
+    glm::vec2 exponents{0, 0}; // of exponential functions
+    // Stored texels are matrix · moments + offset.
+    glm::dmat4 storedFromMoments{1};
+    glm::dvec4 storedOffset{0};
+    std::span<const Channel> channels = {};
+};
+
+// Draws the shadow map and filters it: "moments-of-rows", then "moments".
+struct MomentMap {
+    Image moments;
+    Image depth; // the shadow map
+    LightViewBlock view;
+    glm::vec4 weights[8]; // of the kernel
+};
+MomentMap drawMomentMap(Flow& flow, Scope scope, const Inputs& inputs, const MomentMapDescription& description);
+
+// The first two or four powers as the parameters say, and how they are read with the moment bias α.
+MomentMapDescription describePowers(int count, const ShadowMapDescription& map, const KernelParameters& kernel,
+                                    const MomentParameters& moments);
+MomentLookupBlock lookupOfPowers(int count, const MomentParameters& moments, double alpha = 0);
+
+// The pass from a moment map to ψ: a shader that includes moment_lookup.glsl; `withDepths` reads the shadow map as
+// well.
+Image resolveMoments(Flow& flow, Scope scope, const Inputs& inputs, std::string_view shader, const MomentMap& map,
+                     const MomentLookupBlock& lookup, const ParameterSet& parameters, bool withDepths = false);
+
+} // namespace penumbra

@@ -1,0 +1,386 @@
+// SPDX-License-Identifier: MIT
+// Bounds from moments against values worked out with many digits, against linear programming, against the true ψ of
+// random distributions, and float against double.
+#include "tests/catch.h"
+#include "tests/numerics/glsl_cpp.h"
+#include "tests/numerics/moments_golden.h"
+
+#include <glpk.h>
+
+#include <algorithm>
+#include <map>
+#include <random>
+#include <string>
+#include <vector>
+
+namespace {
+
+using glm::dvec2;
+using glm::dvec4;
+
+// Atoms of depth.
+struct Distribution {
+    struct Atom {
+        double z, weight;
+    };
+    std::vector<Atom> atoms;
+
+    template <class Function> auto mean(Function&& f) const {
+        auto sum = atoms[0].weight * f(atoms[0].z);
+        for (size_t i = 1; i < atoms.size(); ++i) sum += atoms[i].weight * f(atoms[i].z);
+        return sum;
+    }
+    dvec4 powers() const {
+        return mean([](double z) { return f64::powersOf(z); });
+    }
+    double inFront(double z_f) const {
+        double sum = 0;
+        for (const Atom& atom : atoms) sum += atom.z < z_f ? atom.weight : 0;
+        return sum;
+    }
+};
+
+// One to eight surfaces, with the nasty ones among them: at 0 and 1, nearly equal, of hardly any weight.
+class Distributions {
+public:
+    explicit Distributions(unsigned seed) : random_(seed) {}
+    double unit() { return std::uniform_real_distribution<double>(0, 1)(random_); }
+    int below(int n) { return static_cast<int>(random_() % static_cast<unsigned>(n)); }
+
+    Distribution next() {
+        Distribution d;
+        const int count = 1 + below(8), style = below(5);
+        const bool clustered = unit() < 0.3;
+        const double base = 0.98 * unit();
+        double sum = 0;
+        for (int i = 0; i < count; ++i) {
+            double z = clustered ? base + 0.02 * unit() : unit();
+            if (i == 0 && style < 2) z = style;
+            const double weight = (style == 2 ? std::pow(unit(), 6) : unit()) + 1e-6;
+            d.atoms.push_back({z, weight});
+            sum += weight;
+        }
+        for (Distribution::Atom& atom : d.atoms) atom.weight /= sum;
+        return d;
+    }
+    // Anywhere, or on either side of a surface at 0.1 to 1e-7 of the range.
+    double fragment(const Distribution& d) {
+        if (unit() < 0.5) return unit();
+        const double away = std::pow(10, -1 - 6 * unit());
+        const double z = d.atoms[static_cast<size_t>(below(static_cast<int>(d.atoms.size())))].z;
+        return std::clamp(z + (unit() < 0.5 ? away : -away), 0.0, 1.0);
+    }
+
+private:
+    std::mt19937 random_;
+};
+
+const std::map<std::string, Distribution> named{
+    {"D3", {{{0.2, 0.3}, {0.5, 0.3}, {0.8, 0.4}}}},
+    {"D4", {{{0.1, 0.25}, {0.3, 0.25}, {0.6, 0.25}, {0.9, 0.25}}}},
+    {"E3", {{{0.02, 0.2}, {0.5, 0.5}, {0.97, 0.3}}}},
+    {"S1", {{{0.5, 1}}}},
+    {"S2", {{{0.25, 0.5}, {0.75, 0.5}}}},
+    {"S3", {{{0.4, 0.3}, {0.5, 0.7}}}},
+    {"S4", {{{0.1, 0.9}, {0.9, 0.1}}}},
+};
+
+// Even over an interval where they have no atoms.
+dvec4 powerMoments(const std::string& name) {
+    if (name == "U01") return {0.5, 1.0 / 3, 0.25, 0.2};
+    if (name == "U46") return {0.5, 0.25333333333333333, 0.13, 0.06752};
+    return named.at(name).powers();
+}
+
+dvec4 trigonometricMoments(const std::string& name) {
+    const auto mean = [](double k, double low, double high) {
+        const double a = 2 * M_PI * k * low, b = 2 * M_PI * k * high;
+        return dvec2(std::cos(a) - std::cos(b), std::sin(b) - std::sin(a)) / (b - a);
+    };
+    const auto even = [&](double low, double high) { return dvec4(mean(1, low, high), mean(2, low, high)); };
+    if (name == "U01") return even(0, 1);
+    if (name == "U46") return even(0.4, 0.6);
+    return named.at(name).mean([](double z) { return f64::trigonometricOf(z); });
+}
+
+dvec4 biased(dvec4 b, double alpha, dvec4 target = dvec4(0.5)) { return b + alpha * (target - b); }
+
+const f64::DepthRange exact{0, 1, 1e-300, 1e-300};
+
+// What a lookup in a 32-bit map passes on (renderer/shadow_map/moment_map.cpp).
+f32::DepthRange rangeOf(double alpha) {
+    return {0, 1, float(std::max(alpha / 4, 1e-7)), float(std::max(alpha / 128, 1e-9))};
+}
+f32fused::DepthRange alike(const f32::DepthRange& r) { return {r.low, r.high, r.leastVariance, r.leastPivot}; }
+
+// Weights of five atoms that have the moments, by elimination with more digits than the solver has.
+std::vector<long double> weightsOf(const std::vector<double>& atoms, const double (&moments)[5]) {
+    const size_t n = atoms.size();
+    std::vector<std::vector<long double>> rows(5, std::vector<long double>(n + 1));
+    for (size_t k = 0; k < 5; ++k) {
+        for (size_t j = 0; j < n; ++j) rows[k][j] = std::pow(static_cast<long double>(atoms[j]), static_cast<int>(k));
+        rows[k][n] = moments[k];
+    }
+    for (size_t j = 0; j < n; ++j) {
+        const auto larger = [&](const auto& p, const auto& q) { return std::abs(p[j]) < std::abs(q[j]); };
+        std::swap(rows[j], *std::max_element(rows.begin() + static_cast<std::ptrdiff_t>(j), rows.end(), larger));
+        for (size_t k = 0; k < 5; ++k) {
+            if (k == j) continue;
+            const long double factor = rows[k][j] / rows[j][j];
+            for (size_t i = j; i <= n; ++i) rows[k][i] -= factor * rows[j][i];
+        }
+    }
+    std::vector<long double> weights;
+    for (size_t j = 0; j < n; ++j) weights.push_back(rows[j][n] / rows[j][j]);
+    return weights;
+}
+
+// The least mass in front of v that atoms at `grid` can have with the moments 1, 0, 1, γ, κ. Columns are scaled, since
+// powers of far atoms make a solver fail; which atoms are needed is the solver's answer, their weights are worked out
+// again.
+double leastMass(std::vector<double> grid, double v, double skew, double kurtosis) {
+    std::sort(grid.begin(), grid.end());
+    grid.erase(std::unique(grid.begin(), grid.end()), grid.end());
+    glp_prob* problem = glp_create_prob();
+    glp_set_obj_dir(problem, GLP_MIN);
+    const double moments[] = {1, 0, 1, skew, kurtosis};
+    glp_add_rows(problem, 5);
+    for (int k = 0; k < 5; ++k) glp_set_row_bnds(problem, k + 1, GLP_FX, moments[k], moments[k]);
+    glp_add_cols(problem, static_cast<int>(grid.size()));
+    for (size_t j = 0; j < grid.size(); ++j) {
+        const int column = static_cast<int>(j) + 1;
+        const double scale = 1 / (1 + std::pow(grid[j], 4));
+        const int rows[] = {0, 1, 2, 3, 4, 5};
+        double values[6];
+        for (int k = 0; k < 5; ++k) values[k + 1] = scale * std::pow(grid[j], k);
+        glp_set_mat_col(problem, column, 5, rows, values);
+        glp_set_col_bnds(problem, column, GLP_LO, 0, 0);
+        glp_set_obj_coef(problem, column, grid[j] < v ? scale : 0);
+    }
+    glp_smcp options;
+    glp_init_smcp(&options);
+    options.msg_lev = GLP_MSG_OFF;
+    options.tol_bnd = options.tol_dj = 1e-11;
+    options.tm_lim = 1000;
+    const bool solved = glp_simplex(problem, &options) == 0 && glp_get_status(problem) == GLP_OPT;
+    std::vector<double> atoms;
+    for (size_t j = 0; j < grid.size(); ++j)
+        if (glp_get_col_stat(problem, static_cast<int>(j) + 1) == GLP_BS) atoms.push_back(grid[j]);
+    glp_delete_prob(problem);
+    if (!solved) return NAN;
+    const std::vector<long double> weights = weightsOf(atoms, moments);
+    long double least = 0;
+    for (size_t j = 0; j < atoms.size(); ++j) {
+        if (!(weights[j] > -1e-6L)) return NAN; // the solver's tolerance let a wrong set of atoms pass
+        least += atoms[j] < v ? weights[j] : 0;
+    }
+    return static_cast<double>(least);
+}
+
+// Standardised depths for a linear program: even over where depths are likely, and those that must be among them.
+std::vector<double> gridOver(double low, double high, std::initializer_list<double> needed) {
+    std::vector<double> grid;
+    for (int i = 0; i <= 60; ++i) grid.push_back(low + (high - low) * i / 60);
+    for (const double u : needed)
+        if (std::isfinite(u) && u >= low && u <= high) grid.push_back(u);
+    return grid;
+}
+
+} // namespace
+
+TEST_CASE("bounds of moments have their golden values") {
+    for (const golden::Row& row : golden::hamburger)
+        for (size_t i = 0; i < std::size(golden::depths); ++i) {
+            CAPTURE(row.distribution, row.alpha, golden::depths[i]);
+            const dvec4 b = biased(powerMoments(row.distribution), row.alpha);
+            CHECK(f64::hamburgerBound(b, golden::depths[i], exact) == Approx(row.psi[i]).margin(1e-9));
+            // In float rounding decides in the third digit where there are but one or two surfaces.
+            const glm::vec4 single(b);
+            const auto z_f = float(golden::depths[i]);
+            CHECK(f32::hamburgerBound(single, z_f, rangeOf(row.alpha)) == Approx(row.psi[i]).margin(3e-3));
+            CHECK(f32fused::hamburgerBound(single, z_f, alike(rangeOf(row.alpha))) == Approx(row.psi[i]).margin(3e-3));
+        }
+    for (const golden::Row& row : golden::hausdorff)
+        for (size_t i = 0; i < std::size(golden::depths); ++i) {
+            CAPTURE(row.distribution, row.alpha, golden::depths[i]);
+            const dvec4 b = biased(powerMoments(row.distribution), row.alpha);
+            CHECK(f64::hausdorffBound(b, golden::depths[i], exact) == Approx(row.psi[i]).margin(1e-9));
+            const glm::vec4 single(b);
+            const auto z_f = float(golden::depths[i]);
+            CHECK(f32::hausdorffBound(single, z_f, rangeOf(row.alpha)) == Approx(row.psi[i]).margin(3e-3));
+            CHECK(f32fused::hausdorffBound(single, z_f, alike(rangeOf(row.alpha))) == Approx(row.psi[i]).margin(3e-3));
+        }
+    for (const golden::Row& row : golden::trigonometric)
+        for (size_t i = 0; i < std::size(golden::depths); ++i) {
+            CAPTURE(row.distribution, golden::depths[i]);
+            const dvec4 b = trigonometricMoments(row.distribution);
+            // 2π is a float's here and in the shader: 3e-8.
+            CHECK(f64::trigonometricBound(b, golden::depths[i], 1e-300) == Approx(row.psi[i]).margin(1e-6));
+            const glm::vec4 single(b);
+            const auto z_f = float(golden::depths[i]);
+            CHECK(f32::trigonometricBound(single, z_f, 1e-7f) == Approx(row.psi[i]).margin(1e-5));
+            CHECK(f32fused::trigonometricBound(single, z_f, 1e-7f) == Approx(row.psi[i]).margin(1e-5));
+        }
+}
+
+TEST_CASE("bounds of four powers are what linear programming finds") {
+    Distributions distributions(1);
+    int compared = 0, unsolved = 0;
+    double worst = 0, worstInside = 0;
+    for (int i = 0; i < 1500; ++i) {
+        const Distribution d = distributions.next();
+        const double z_f = distributions.fragment(d);
+        const dvec4 b = d.powers();
+        const f64::Standardised s = f64::standardised(b, exact);
+        const double v = (z_f - s.mean) * s.perSigma;
+        const double kurtosis = s.kurtosis;
+        // The smallest pivot: of the matrix in units of the depth range.
+        const double variance = 1 / (s.perSigma * s.perSigma);
+        if (std::min(variance, s.spread * variance * variance) < 1e-8) continue;
+        const f64::ThreeAtoms a = f64::threeAtoms(s, v);
+        const double far = 1 / a.perFar;
+        const double reach = std::min(2 * std::max({std::abs(a.near), std::abs(far), std::abs(v), 4.0}), 1e3);
+        const double line = leastMass(gridOver(-reach, reach, {v, a.near, far}), v, s.skew, kurtosis);
+        const double low = -s.mean * s.perSigma, high = (1 - s.mean) * s.perSigma;
+        const double pull = f64::cubicMean(s, low, high, v);
+        const double fourth = (kurtosis - s.skew * (low + high + v) + low * high + v * (low + high)) / pull;
+        const double interval =
+            leastMass(gridOver(low, high, {v, a.near, far, fourth, low, high}), v, s.skew, kurtosis);
+        if (!std::isfinite(line) || !std::isfinite(interval)) {
+            ++unsolved;
+            continue;
+        }
+        ++compared;
+        worst = std::max(worst, std::abs(f64::hamburgerBound(b, z_f, exact) - line));
+        const double inside = std::abs(f64::hausdorffBound(b, z_f, exact) - interval);
+        worstInside = std::max(worstInside, inside);
+    }
+    CAPTURE(compared, unsolved, worst, worstInside);
+    CHECK(compared > 700);
+    CHECK(unsolved < 0.02 * compared);
+    CHECK(worst < 1e-6);
+    CHECK(worstInside < 1e-6);
+}
+
+TEST_CASE("variance and warped variance bounds are Cantelli's inequality") {
+    // Half of the depths at 0.25 and half at 0.75.
+    const dvec2 b(0.5, 0.3125);
+    CHECK(f64::varianceBound(b, 0.5, 0.0) == 0);
+    CHECK(f64::varianceBound(b, 0.75, 0.0) == Approx(0.5));
+    CHECK(f64::varianceBound(b, 0.8, 0.0) == Approx(1 - 0.409836065574).epsilon(1e-9));
+    CHECK(f64::withoutBleeding(1 - 0.409836065574, 0.2) == Approx(1 - 0.262295081967).epsilon(1e-6));
+    CHECK(f64::withoutBleeding(0.9, 0.5) == 1);
+    const auto warped = [](double c, double z, bool negative) {
+        const double x = 2 * z - 1;
+        return negative ? -std::exp(-c * x) : std::exp(c * x);
+    };
+    const auto bound = [&](double c, double z_f, bool negative) {
+        const double p = warped(c, 0.25, negative), q = warped(c, 0.75, negative);
+        return f64::warpedVarianceBound(dvec2(p + q, p * p + q * q) * 0.5, warped(c, z_f, negative), 0.0);
+    };
+    CHECK(bound(5.54, 0.8, false) == Approx(1 - 0.139249248083).epsilon(1e-9));
+    CHECK(bound(40, 0.8, false) == Approx(1 - 8.54157745577e-5).epsilon(1e-9));
+    CHECK(bound(5.54, 0.5, true) == Approx(1 - 0.562416923019).epsilon(1e-9));
+    CHECK(bound(40, 0.5, true) == Approx(1 - 0.500000002061).epsilon(1e-9));
+    // At the ends of what a float holds.
+    for (const float c : {0.5f, 5.54f, 44.0f})
+        for (const float x : {-1.0f, -0.3f, 0.0f, 1.0f})
+            for (const float x_f : {-1.0f, 0.0f, 1.0f})
+                for (const float sign : {1.0f, -1.0f}) {
+                    const float w = sign * std::exp(sign * c * x), w_f = sign * std::exp(sign * c * x_f);
+                    const float psi = f32::warpedVarianceBound(glm::vec2(w, w * w), w_f, 0.0f);
+                    CAPTURE(c, x, x_f, sign, psi);
+                    CHECK(psi >= 0);
+                    CHECK(psi <= 1);
+                    if (x_f <= x) CHECK(psi < 1e-5f);
+                    if (c * (x_f - x) > 10) CHECK(psi > 0.99f);
+                }
+}
+
+TEST_CASE("where an atom of Hamburger's bound passes through infinity it neither jumps nor loses digits") {
+    // Even over [0, 1]; c3 = 0 at the roots of 6z² − 6z + 1.
+    const dvec4 b(0.5, 1.0 / 3, 0.25, 0.2);
+    const double roots[] = {0.21132486540518711775, 0.78867513459481288225};
+    struct Row {
+        double beside, psi[2];
+    };
+    for (const Row& row :
+         {Row{-1e-3, {0, 0.4982799963878}}, Row{-1e-6, {0, 0.4999982679612}}, Row{0, {0, 0.5}},
+          Row{1e-6, {4.499875294421e-21, 0.5000017320628}}, Row{1e-3, {4.377349007775e-9, 0.5017439984609}}})
+        for (int i = 0; i < 2; ++i) {
+            CAPTURE(i, row.beside);
+            CHECK(f64::hamburgerBound(b, roots[i] + row.beside, exact) == Approx(row.psi[i]).margin(1e-11));
+            CHECK(f32::hamburgerBound(glm::vec4(b), float(roots[i] + row.beside), rangeOf(0)) ==
+                  Approx(row.psi[i]).margin(2e-6));
+        }
+    for (const double root : roots) {
+        float z = float(root);
+        for (int i = 0; i < 2000; ++i) z = std::nextafter(z, 0.0f);
+        for (int i = 0; i < 4000; ++i, z = std::nextafter(z, 1.0f)) {
+            const double difference =
+                f32::hamburgerBound(glm::vec4(b), z, rangeOf(0)) - f64::hamburgerBound(b, z, exact);
+            if (std::abs(difference) < 1e-6) continue;
+            CAPTURE(z, difference);
+            CHECK(std::abs(difference) < 1e-6);
+        }
+    }
+}
+
+TEST_CASE("two surfaces are reconstructed exactly as the moment bias goes to 0") {
+    Distributions distributions(2);
+    for (int i = 0; i < 2000; ++i) {
+        Distribution d{{{0.02 + 0.7 * distributions.unit(), distributions.unit()}, {0, 0}}};
+        d.atoms[1] = {d.atoms[0].z + 0.05 + 0.15 * distributions.unit(), 1 - d.atoms[0].weight};
+        for (const double z_f : {d.atoms[0].z - 0.02, d.atoms[0].z + 0.02, d.atoms[1].z - 0.02, d.atoms[1].z + 0.02}) {
+            CAPTURE(d.atoms[0].z, d.atoms[0].weight, d.atoms[1].z, z_f);
+            const dvec4 b = biased(d.powers(), 1e-10);
+            CHECK(f64::hamburgerBound(b, z_f, exact) == Approx(d.inFront(z_f)).margin(1e-4));
+            CHECK(f64::hausdorffBound(b, z_f, exact) == Approx(d.inFront(z_f)).margin(1e-4));
+        }
+    }
+}
+
+TEST_CASE("without moment bias the near and far planes do not change the result") {
+    Distributions distributions(3);
+    int compared = 0;
+    for (int i = 0; i < 5000; ++i) {
+        const Distribution d = distributions.next();
+        const double z_f = distributions.fragment(d);
+        const f64::Standardised s = f64::standardised(d.powers(), exact);
+        const double variance = 1 / (s.perSigma * s.perSigma);
+        if (variance < 1e-4 || s.spread * variance * variance < 1e-6) continue;
+        const double x = 0.1 + 0.8 * distributions.unit(), y = (1 - x) * distributions.unit();
+        const dvec4 moved = d.mean([&](double z) { return f64::powersOf(x * z + y); });
+        const double psi = f64::hamburgerBound(d.powers(), z_f, exact);
+        CAPTURE(x, y, z_f, s.spread);
+        CHECK(f64::hamburgerBound(moved, x * z_f + y, {-1, 2, 1e-300, 1e-300}) == Approx(psi).margin(1e-5));
+        ++compared;
+    }
+    CHECK(compared > 2000);
+}
+
+TEST_CASE("no bound is above the true shadow") {
+    // In double: by no more than half of the moment bias, which puts half of itself at 0 (trigonometric: all of it),
+    // and rounding: a surface counts at most 1e-6 of the range before it, and Hausdorff's four atoms lose digits where
+    // one of them lies within 1e-5 of the fragment.
+    Distributions distributions(4);
+    const auto check = [](double bound, double truth) {
+        if (bound > truth) CHECK(bound <= truth);
+    };
+    for (int i = 0; i < 20000; ++i) {
+        const Distribution d = distributions.next();
+        const double z_f = distributions.fragment(d), truth = d.inFront(z_f + 1e-6);
+        const double alpha = std::pow(10, -6 + 4 * distributions.unit());
+        CAPTURE(i, z_f, alpha);
+        const dvec4 b = biased(d.powers(), alpha);
+        const double hamburger = f64::hamburgerBound(b, z_f, {0, 1, alpha / 4, alpha / 128});
+        const double hausdorff = f64::hausdorffBound(b, z_f, {0, 1, 1e-12, 1e-14});
+        const bool beside = std::any_of(d.atoms.begin(), d.atoms.end(),
+                                        [&](const Distribution::Atom& a) { return std::abs(a.z - z_f) < 1e-5; });
+        check(hamburger, truth + alpha / 2 + 1e-6);
+        check(hausdorff, truth + alpha / 2 + (beside ? 3e-3 : 1e-6));
+        check(hamburger, hausdorff + 1e-6); // knowing more allows more
+        const dvec4 t = biased(d.mean([](double z) { return f64::trigonometricOf(z); }), alpha, dvec4(0));
+        check(f64::trigonometricBound(t, z_f, alpha), truth + alpha + 1e-5);
+    }
+}

@@ -1,0 +1,126 @@
+// SPDX-License-Identifier: MIT
+// Filterable shadow maps through the whole pipeline: map, filter and resolve on the GPU.
+#include "renderer/shadow_map/moment_map.h"
+#include "tests/catch.h"
+#include "tests/support/scenes.h"
+
+#include <cmath>
+#include <string>
+#include <vector>
+
+using namespace penumbra;
+using namespace penumbra::test;
+
+namespace {
+
+// Two plates that meet at x = 0, at map depths 0.25 and 0.75, and a floor below either or, at less than 0.75, below the
+// left one alone. A kernel at x = 0 holds half of each.
+constexpr float span = 4, nearSlack = 1e-3f * span; // of the map's depth range, which has some slack at either end
+
+float heightOf(double z) { return span + nearSlack - static_cast<float>(z) * (span + 2 * nearSlack); }
+
+std::shared_ptr<const Scene> step(double z_f, float texel) {
+    SceneBuilder builder;
+    const auto plate = [&](double z, float x0, float x1, float halfZ) {
+        const float y = heightOf(z);
+        builder.quad({x0, y, halfZ}, {x1, y, halfZ}, {x1, y, -halfZ}, {x0, y, -halfZ});
+    };
+    plate(0.25, -2, 0, 2);
+    plate(0.75, 0, 2, 2);
+    plate(z_f, -2, z_f < 0.75 ? 0.2f * texel : 2.0f, 2);
+    for (const float side : {-1.0f, 1.0f}) // hold the ends of the depth range
+        for (const double z : {nearSlack / (span + 2 * nearSlack), (span + nearSlack) / (span + 2 * nearSlack)})
+            plate(z, side * 1.95f - 0.05f, side * 1.95f + 0.05f, 0.05f);
+    return builder.build();
+}
+
+// ψ at x = 0 on the floor.
+float psiAtStep(std::string_view technique, double z_f, const std::vector<std::string>& settings) {
+    constexpr int mapSize = 128;
+    Session s = session(step(z_f, 4.0f / mapSize), technique);
+    s.light = {.shape = LightShape::Directional, .position = {0, 10, 0}, .target = {0, 0, 0}, .size = {0, 0}};
+    const float y = heightOf(z_f);
+    s.camera = {.eye = {0, y + 0.1f, 1}, .target = {0, y, 0}, .fovY = 20};
+    s.size = {5, 41};
+    for (const std::string& setting : settings) s.techniques.assign(setting);
+    s.techniques.assign("map-size=" + std::to_string(mapSize));
+    for (const char* bias : {"depth-bias=0", "slope-bias=0", "normal-offset=0"}) s.techniques.assign(bias);
+    const ShadowImage image = draw(s);
+    REQUIRE(image.surface(2, 20));
+    REQUIRE(std::abs(image.positionWorld(2, 20).x) < 1e-5f);
+    REQUIRE(std::abs(image.positionWorld(2, 20).y - y) < 1e-3f);
+    return image.at(2, 20);
+}
+
+struct Golden {
+    const char* technique;
+    std::vector<std::string> settings;
+    std::vector<std::pair<double, double>> psi; // z_f, ψ
+    double margin;
+};
+
+} // namespace
+
+TEST_CASE("two surfaces give every filterable map its golden ψ") {
+    const std::vector<std::string> float32{"format=32f"}, halves{"format=unorm16-optimised"};
+    const Golden cases[] = {
+        {"pcf", {"shape=gaussian", "kernel=9"}, {{0.5, 0.5}, {0.6, 0.5}, {0.8, 1}, {0.9, 1}}, 1e-5},
+        {"vsm",
+         {"format=32f", "minimum-variance=0"},
+         {{0.5, 0}, {0.6, 0.01 / 0.0725}, {0.8, 1 - 0.409836065574}, {0.9, 1 - 0.280898876404}},
+         1e-4},
+        {"vsm",
+         {"format=unorm16-optimised", "minimum-variance=0"},
+         {{0.8, 1 - 0.409852058635}, {0.9, 1 - 0.280909664238}},
+         1e-4},
+        {"vsm",
+         {"format=unorm16", "depth-range=signed", "minimum-variance=0"},
+         {{0.8, 1 - 0.409836065574}, {0.9, 1 - 0.280898876404}},
+         2e-4},
+        {"vsm",
+         {"format=32f", "minimum-variance=0", "bleeding-reduction=0.2"},
+         {{0.8, 1 - 0.262295081967}, {0.9, 1 - 0.101123595506}},
+         1e-4},
+        {"vsm", {"format=32f", "minimum-variance=0", "bleeding-reduction=0.5"}, {{0.8, 1}, {0.9, 1}}, 1e-4},
+        {"esm", {"fallback=false"}, {{0.5, 0}, {0.8, 1 - 9.15781944437e-3}, {0.9, 1 - 3.07210617666e-6}}, 2e-4},
+        {"esm", {"fallback=false", "exponent=40"}, {{0.8, 1 - 0.0676676417578}}, 2e-4},
+        {"esm", {"fallback=false", "exponent=10"}, {{0.8, 1 - 0.305308715576}, {0.9, 1 - 0.112316799671}}, 2e-4},
+        {"esm", {"fallback=false", "format=16f", "exponent=10"}, {{0.8, 1 - 0.305308715576}}, 2e-3},
+        {"esm", {"fallback=true"}, {{0.5, 0.5}, {0.6, 0.5}}, 1e-5},
+        {"evsm", {"positive-exponent=5.54", "components=2"}, {{0.5, 0}, {0.8, 1 - 0.139249248083}}, 1e-3},
+        {"evsm",
+         {"positive-exponent=5.54", "negative-exponent=5.54"},
+         {{0.5, 1 - 0.562416923019}, {0.8, 1 - 0.139249248083}, {0.9, 1 - 0.0107934357424}},
+         1e-3},
+        {"evsm",
+         {"positive-exponent=40", "negative-exponent=40"},
+         {{0.5, 1 - 0.500000002061}, {0.8, 1}, {0.9, 1 - 1.59998423088e-5}},
+         1e-4},
+        {"msm-hamburger", {"format=32f"}, {{0.5, 0.499991000288}, {0.6, 0.5}, {0.9, 0.999992603703}}, 2e-4},
+        {"msm-hamburger", {"format=32f", "moment-bias=3e-4"}, {{0.5, 0.498656450971}, {0.9, 0.998893953966}}, 2e-4},
+        {"msm-hamburger", {"format=unorm16-optimised"}, {{0.5, 0.499865064771}, {0.9, 0.999889087589}}, 2e-3},
+        {"msm-hamburger", {"format=32f", "depth-range=signed"}, {{0.5, 0.499999400001}, {0.9, 0.999999506904}}, 1e-4},
+        {"msm-hamburger",
+         {"format=unorm16-optimised", "depth-range=signed"},
+         {{0.5, 0.499819382169}, {0.9, 0.999851543893}},
+         2e-3},
+        {"msm-hausdorff", {"format=32f"}, {{0.5, 0.499991000288}, {0.6, 0.499994489961}, {0.95, 0.99999641267}}, 2e-4},
+        {"msm-hausdorff", {"format=unorm16-optimised"}, {{0.6, 0.499917383964}, {0.95, 0.999946198978}}, 2e-3},
+        {"msm-trigonometric",
+         {"format=32f", "near-margin=0", "moment-bias=1e-4"},
+         {{0.6, 0.499975001}, {0.9, 0.999923615}},
+         1e-4},
+        {"msm-trigonometric",
+         {"format=32f", "near-margin=0", "moment-bias=1e-5"},
+         {{0.6, 0.499997500}, {0.9, 0.999992361}},
+         1e-4},
+    };
+    for (const Golden& golden : cases)
+        for (const auto& [z_f, psi] : golden.psi) {
+            std::string settings;
+            for (const std::string& setting : golden.settings) settings += setting + " ";
+            CAPTURE(golden.technique, settings, z_f);
+            CHECK(psiAtStep(golden.technique, z_f, golden.settings) == Approx(psi).margin(golden.margin));
+        }
+    CHECK(driverMessages().empty());
+}
