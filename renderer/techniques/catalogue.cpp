@@ -12,7 +12,8 @@
     X(pcf)                                                                                                             \
     X(pcss)                                                                                                            \
     X(lightSampling)                                                                                                   \
-    X(temporal)
+    X(temporal)                                                                                                        \
+    X(fractionalDisk)
 
 namespace penumbra {
 
