@@ -33,20 +33,15 @@ Lookup makeLookup(Receiver r, float constantBias, float slopeTexels, bool withPl
     g *= metresPerTexel;
     float slope = abs(g.x) + abs(g.y);
     float perMetre = lightView.range.z;
-#ifdef RADIAL_METRIC
-    float depth_r = length(r.positionLight - vec3(lightView.sample_reference.xy, 0.0));
-#else
-    float depth_r = r.d;
-#endif
     if (directional) {
         g *= perMetre;
         l.compared = (r.d - lightView.range.x) * perMetre;
         l.offset = constantBias + slopeTexels * slope * perMetre;
         l.farthest = onlyNearer ? 0.0 : 1.0 - l.compared;
     } else {
-        l.compared = depth_r * perMetre;
-        l.offset = lightView.range.x * perMetre + constantBias + slopeTexels * slope * depth_r * perMetre;
-        l.farthest = onlyNearer ? 0.0 : depth_r / lightView.range.y - 1.0;
+        l.compared = r.d * perMetre;
+        l.offset = lightView.range.x * perMetre + constantBias + slopeTexels * slope * r.d * perMetre;
+        l.farthest = onlyNearer ? 0.0 : r.d / lightView.range.y - 1.0;
     }
     l.gradient = withPlane ? g : vec2(0.0);
     return l;

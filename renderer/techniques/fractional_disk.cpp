@@ -102,18 +102,18 @@ struct Parameters : ParameterSet {
          .scale = Scale::Logarithmic,
          .source = "Valient, de Boer (5 passes of 10)",
          .help = "Samples of a disk, however large it is. Wide penumbrae show as many steps, or noise."}};
-    Real fullSamplesTo{*this,
-                       {.id = "full-samples-to",
-                        .label = "Full samples up to",
-                        .value = 0,
-                        .min = 0,
-                        .max = 1000,
-                        .unit = Unit::Metres,
-                        .scale = Scale::Logarithmic,
-                        .smallest = 0.1,
-                        .source = "Valient, de Boer, Optimizations",
-                        .help = "Distance from the viewer up to which disks have all their samples; beyond it they "
-                                "fall with its square, as the disk's size on the screen does. 0: everywhere."}};
+    Real samplesPerPixel{*this,
+                         {.id = "samples-per-pixel",
+                          .label = "Samples per pixel",
+                          .value = 0,
+                          .min = 0,
+                          .max = 4,
+                          .scale = Scale::Logarithmic,
+                          .smallest = 1e-3,
+                          .source = "Valient, de Boer, Optimizations (fewer samples farther from the viewer)",
+                          .help = "Disks that are far from the viewer take no more samples than this for each pixel of "
+                                  "their area on the screen, which falls with the square of the distance. 0: all of "
+                                  "eq. 2."}};
     Choice<Noise> noise{*this,
                         {.id = "noise",
                          .value = double(Noise::RandomStart),

@@ -131,7 +131,11 @@ void main()
 #else
     vec3 own = vec3(storedDepth(corner), 1.0, 0.0);
 #endif
+#ifdef RADIAL_METRIC
+    bool hard = own.x < 1.0 && occluderDepth(disk, own.x, corner + 0.5 - l.texel) + disk.bias < disk.depth;
+#else
     bool hard = own.x < 1.0 && blocks(l, own.x, vec2(0.0)) > 0.0;
+#endif
     ivec2 start = firstSample(r.pixel);
 
     // The disk's half size, from the receiver's own occluder or, where it is lit, from the nearest.
@@ -156,9 +160,13 @@ void main()
 #endif
 #endif
 
-    float samples = sampleCount(diskTexels(q, roundLight), texelsPerSample);
-    float fewer = fullSamplesTo > 0.0 ? min(fullSamplesTo / max(r.eyeDepth, 1e-6), 1.0) : 1.0;
-    int count = filters ? int(min(max(ceil(samples * fewer * fewer), 1.0), float(maxSamples))) : 0;
+    float texels = diskTexels(q, roundLight);
+    float samples = min(sampleCount(texels, texelsPerSample), float(maxSamples));
+    // Of a disk that is far from the viewer, no more for each pixel that its area takes on the screen.
+    float metresPerPixel = length(view.rayDx.xyz) * r.eyeDepth;
+    float pixels = texels / max(disk.texelsPerMetre * disk.texelsPerMetre * metresPerPixel * metresPerPixel, 1e-12);
+    samples = samplesPerPixel > 0.0 ? min(samples, ceil(pixels * samplesPerPixel)) : samples;
+    int count = filters ? int(max(samples, 1.0)) : 0;
     float lit = slipSum && !hard ? 1.0 : 0.0;
     for (int i = 0; i < count; ++i)
         lit += occluderAt(disk, l.texel, samplePoint(start, i) * q) < disk.depth ? 0.0 : 1.0;
