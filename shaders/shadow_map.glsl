@@ -8,8 +8,8 @@ layout(std140, binding = 0) uniform Constants { LightViewBlock lightView; };
 #ifdef VERTEX_SHADER
 #if defined(RADIAL)
 out vec3 fromLight; // [m]
-#elif defined(LINEAR_DEPTH)
-out float z; // linear in the position, so interpolation keeps it exact
+#elif defined(LINEAR_DEPTH) || defined(RADIAL_OF_VERTICES)
+out float z; // where it is linear in the position, interpolation keeps it exact
 #endif
 #ifdef SIGN_MOVERS
 flat out float side; // −1 for what has moved since the last frame
@@ -24,8 +24,13 @@ out float vertexAlpha;
 void main()
 {
     vec4 positionWorld = vec4(transformed(affine(worldFromModel), positionModel), 1.0);
+#if defined(RADIAL) || defined(RADIAL_OF_VERTICES)
+    vec3 fromPoint = (lightView.lightFromWorld * positionWorld).xyz - vec3(lightView.sample_reference.xy, 0.0);
+#endif
 #if defined(RADIAL)
-    fromLight = (lightView.lightFromWorld * positionWorld).xyz - vec3(lightView.sample_reference.xy, 0.0);
+    fromLight = fromPoint;
+#elif defined(RADIAL_OF_VERTICES)
+    z = (length(fromPoint) - lightView.range.x) * lightView.range.z;
 #elif defined(LINEAR_DEPTH)
     vec4 lightZ = vec4(lightView.lightFromWorld[0].z, lightView.lightFromWorld[1].z, lightView.lightFromWorld[2].z, lightView.lightFromWorld[3].z);
     z = (-dot(lightZ, positionWorld) - lightView.range.x) * lightView.range.z;
@@ -58,7 +63,7 @@ flat in float side;
 #endif
 #if defined(RADIAL)
 in vec3 fromLight;
-#elif defined(LINEAR_DEPTH)
+#elif defined(LINEAR_DEPTH) || defined(RADIAL_OF_VERTICES)
 in float z;
 #endif
 #ifdef MASKED
@@ -81,7 +86,7 @@ void main()
     // Of perspective maps and radial metrics the rasteriser's own depth is not what is stored.
 #if defined(RADIAL)
     float stored = clamp((length(fromLight) - lightView.range.x) * lightView.range.z, 0.0, 1.0);
-#elif defined(LINEAR_DEPTH)
+#elif defined(LINEAR_DEPTH) || defined(RADIAL_OF_VERTICES)
     float stored = clamp(z, 0.0, 1.0);
 #else
     float stored = gl_FragCoord.z;
@@ -90,7 +95,7 @@ void main()
     // Beyond rounding: the same surface must not come again.
     if (stored <= texelFetch(nearer, ivec2(gl_FragCoord.xy), 0).x + 1e-6) discard;
 #endif
-#if defined(RADIAL) || defined(LINEAR_DEPTH)
+#if defined(RADIAL) || defined(LINEAR_DEPTH) || defined(RADIAL_OF_VERTICES)
     gl_FragDepth = stored;
 #endif
 #ifdef SIGN_MOVERS

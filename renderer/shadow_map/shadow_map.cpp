@@ -109,7 +109,7 @@ LightViewBlock lightView(const Inputs& inputs, const ShadowMapDescription& descr
     const LightSample s = description.sample;
     const int size = description.size;
     const AreaLight& light = inputs.light;
-    const bool directional = light.shape == LightShape::Directional, radial = description.metric == Metric::Radial;
+    const bool directional = light.shape == LightShape::Directional, radial = description.metric != Metric::Axial;
     ensure(!(directional && radial), "a directional light has no point to measure radial depth from");
     const mat4 fromWorld = lightFromWorld(light);
     const vec2 half = halfSize(light);
@@ -144,8 +144,11 @@ LightViewBlock lightView(const Inputs& inputs, const ShadowMapDescription& descr
     block.clipFromWorld = glm::transpose(rows) * fromWorld;
     block.sample_reference = {s, f, directional ? 1.0f : 0.0f};
     block.window = {centre, h, h};
-    const float far = radial ? fit.farthest : fit.far;
-    block.range = {fit.near, far, 1 / (far - fit.near), radial ? 1.0f : 0.0f};
+    const vec2 given = radial ? description.range : vec2(0);
+    const float near = given.x > 0 ? given.x : fit.near;
+    float far = given.y > 0 ? given.y : radial ? fit.farthest : fit.far;
+    if (given != vec2(0)) far = std::max(far, near * (1 + 1e-4f));
+    block.range = {near, far, 1 / (far - near), radial ? 1.0f : 0.0f};
     block.light = {half, size, 1.0f / static_cast<float>(size)};
     return block;
 }
@@ -198,7 +201,10 @@ ShadowMap drawShadowMap(Flow& flow, Scope scope, const Inputs& inputs, const Sha
               .border = description.border,
               .clear = {1, 1, 1, 1}};
     // The rasteriser's depth of an orthographic map is the stored depth already.
-    if (view.sample_reference.w == 0) draw.defines.push_back({view.range.w != 0 ? "RADIAL" : "LINEAR_DEPTH"});
+    if (view.sample_reference.w == 0) {
+        static constexpr std::string_view metrics[] = {"LINEAR_DEPTH", "RADIAL", "RADIAL_OF_VERTICES"};
+        draw.defines.push_back({metrics[static_cast<int>(description.metric)]});
+    }
     if (description.signMovers) draw.defines.push_back({"SIGN_MOVERS"});
     PassSpec pass{.stage = Stage::ShadowMap, .name = name, .constants = view};
     if (description.format != Format::Depth32F) {
@@ -229,8 +235,8 @@ ResolveConstants resolveConstants(const Inputs& inputs, const LightViewBlock& li
     return constants;
 }
 
-Image resolve(Flow& flow, Scope scope, const Inputs& inputs, const Resolver& resolver,
-              std::initializer_list<Read> reads, const ParameterSet& parameters) {
+Flow::Outputs resolve(Flow& flow, Scope scope, const Inputs& inputs, const Resolver& resolver, const PassReads& reads,
+                      const ParameterSet& parameters) {
     Compute work{resolver.shader,
                  {{"DIRECTIONAL", inputs.light.shape == LightShape::Directional ? 1 : 0},
                   {"ROUND", inputs.light.shape == LightShape::Rectangle ? 0 : 1}}};
@@ -245,6 +251,7 @@ Image resolve(Flow& flow, Scope scope, const Inputs& inputs, const Resolver& res
                   .constants = resolver.constants,
                   .parameters = &parameters};
     for (const Read& read : reads) pass.reads.push_back(read);
+    for (const ImageSpec& image : resolver.also) pass.writes.push_back(image);
     return flow.pass(scope, pass);
 }
 

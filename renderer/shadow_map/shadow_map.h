@@ -12,8 +12,9 @@ namespace penumbra {
 using LightSample = glm::vec2;
 inline constexpr LightSample lightCentre{0, 0};
 
-// What depth means: along the light's axis, or from the light's point (not for directional lights).
-enum class Metric { Axial, Radial };
+// What depth means: along the light's axis, or from the light's point (not for directional lights), of each fragment or
+// of the vertices and interpolated.
+enum class Metric { Axial, Radial, RadialOfVertices };
 
 // Everything that makes one shadow map another; equal descriptions under one light are one map.
 struct ShadowMapDescription {
@@ -21,6 +22,7 @@ struct ShadowMapDescription {
     Faces faces = Faces::Both;
     LightSample sample = lightCentre;
     Metric metric = Metric::Axial;
+    glm::vec2 range{0, 0};            // of radial depth [m], from and to; what is 0 is fitted to the scene
     Format format = Format::Depth32F; // or R32F, for depths that need a sign
     int samples = 1;                  // a texel; the driver's counts
     int layer = 0;                    // 0: the nearest surfaces, n: those behind the n-th; at most mostLayers − 1
@@ -37,24 +39,27 @@ glm::vec2 gridShift(uint32_t i);
 
 // What every technique that reads a shadow map lets its user turn.
 struct ShadowMapParameters : ParameterGroup {
-    explicit ShadowMapParameters(ParameterSet& s) : ParameterGroup(s, "Shadow map") {}
-    Integer size{
-        set,
-        {.id = "map-size",
-         .label = "Map size",
-         .value = 1024,
-         .min = 16,
-         .max = 16384,
-         .unit = Unit::Texels,
-         .scale = Scale::Logarithmic,
-         .source = "Williams 1978",
-         .help = "Texels along a side of the shadow map. Finer edges and less bias for more memory and time."}};
-    Choice<Faces> faces{set,
-                        {.id = "faces",
-                         .source = "Reeves 1987; Wang and Molnar 1994 (back faces)",
-                         .help = "Which faces cast. Both is right for every scene; back faces need no bias on closed "
-                                 "objects, but leak light at thin ones.",
-                         .choices = facesNames}};
+    explicit ShadowMapParameters(ParameterSet& s, Faces defaultFaces = Faces::Both)
+        : ParameterGroup(s, "Shadow map")
+        , size{set,
+               {.id = "map-size",
+                .label = "Map size",
+                .value = 1024,
+                .min = 16,
+                .max = 16384,
+                .unit = Unit::Texels,
+                .scale = Scale::Logarithmic,
+                .source = "Williams 1978",
+                .help = "Texels along a side of the shadow map. Finer edges and less bias for more memory and time."}}
+        , faces{set,
+                {.id = "faces",
+                 .value = double(defaultFaces),
+                 .source = "Reeves 1987; Wang and Molnar 1994 (back faces)",
+                 .help = "Which faces cast. Both is right for every scene; back faces need no bias on closed objects, "
+                         "but leak light at thin ones.",
+                 .choices = facesNames}} {}
+    Integer size;
+    Choice<Faces> faces;
     End end{set};
 
     ShadowMapDescription describe(LightSample sample = lightCentre) const { return {size, faces, sample}; }
@@ -150,10 +155,12 @@ struct Resolver {
     std::span<const Channel> channels = shadowChannels();
     Defines defines = {};
     Format format = Format::R32F;
-    bool withMargin = false; // as large as the geometry buffer, not as the picture
+    bool withMargin = false;             // as large as the geometry buffer, not as the picture
+    FixedVector<ImageSpec, 2> also = {}; // further images of that size
 };
+using PassReads = decltype(PassSpec::reads);
 // Appends its pass: reads depth, normal and `reads`.
-Image resolve(Flow& flow, Scope scope, const Inputs& inputs, const Resolver& resolver,
-              std::initializer_list<Read> reads, const ParameterSet& parameters);
+Flow::Outputs resolve(Flow& flow, Scope scope, const Inputs& inputs, const Resolver& resolver, const PassReads& reads,
+                      const ParameterSet& parameters);
 
 } // namespace penumbra

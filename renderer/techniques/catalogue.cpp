@@ -18,7 +18,8 @@
     X(evsm)                                                                                                            \
     X(msmHamburger)                                                                                                    \
     X(msmHausdorff)                                                                                                    \
-    X(msmTrigonometric)
+    X(msmTrigonometric)                                                                                                \
+    X(fractionalDisk)
 
 namespace penumbra {
 

@@ -80,6 +80,7 @@ using namespace builtins;
 using vec2 = glm::vec<2, float>;
 using vec3 = glm::vec<3, float>;
 using vec4 = glm::vec<4, float>;
+#include "shaders/lib/fractional_disk.glsl"
 #include "shaders/lib/light_space.glsl"
 #include "shaders/lib/octahedral.glsl"
 #include "shaders/lib/posing.glsl"
@@ -108,6 +109,7 @@ using namespace builtins;
 using vec2 = glm::vec<2, double>;
 using vec3 = glm::vec<3, double>;
 using vec4 = glm::vec<4, double>;
+#include "shaders/lib/fractional_disk.glsl"
 #include "shaders/lib/light_space.glsl"
 #include "shaders/lib/octahedral.glsl"
 #include "shaders/lib/posing.glsl"
