@@ -5,7 +5,10 @@
 #include "app/file_io.h"
 #include "app/headless.h"
 #include "app/image_file.h"
+#include "app/progress_line.h"
+#include "app/truth_cache.h"
 #include "renderer/inspect/inspector.h"
+#include "renderer/measure/yardstick.h"
 #include "renderer/renderer.h"
 
 #include <fmt/format.h>
@@ -141,6 +144,15 @@ void renderFrames(Renderer& renderer, Session& session, const Shot& shot) {
     }
 }
 
+// Beside the frame that was drawn last, which is drawn again.
+void showTruth(Renderer& renderer, Session& session) {
+    ProgressLine line;
+    TruthFiles cache;
+    const Truth truth = traceTruth(readTruthInput(renderer, session), {.cache = &cache}, &line.progress());
+    session.truth = imageOf(truth, session.truthKey());
+    renderer.render(session);
+}
+
 void printResult(const Options& options, const Picture& picture, const Json& facts) {
     if (!options.json) {
         fmt::print("{}: {}x{} {}\n", *options.output, picture.width, picture.height, fmt::join(picture.channels, " "));
@@ -172,6 +184,7 @@ void capture(const Options& options) {
             fmt::print(stderr, "note: {}\n", doubt);
     if (shot.buffer == "shadow") session.display.show = Show::Shadow; // nothing needs to be lit
     renderFrames(renderer, session, shot);
+    if (session.comparison.against == Against::Truth && shot.buffer.empty()) showTruth(renderer, session);
     const Picture picture =
         shot.buffer.empty() ? framePicture(renderer, format) : bufferPicture(renderer, shot, format);
     writePicture(*options.output, picture, facts);

@@ -58,6 +58,16 @@ void listFacts(Io& io, AnyOrigin& origin, AnySession& session, AnyShot& shot) {
         in.number("exposure", session.display.exposure, limits::exposure);
         in.number("ambient", session.display.ambient, limits::ambient);
     });
+    io.group("comparison", [&](Io& in) {
+        auto& comparison = session.comparison;
+        in.choice("against", comparison.against, againstNames());
+        if (comparison.against == Against::Nothing) return;
+        in.choice("as", comparison.as, compareAsNames());
+        in.number("line", comparison.line, {0, 1});
+        in.flag("exchanged", comparison.exchanged);
+        in.number("gain", comparison.gain, {1, 100});
+        if (comparison.against == Against::Technique) in.technique(session.rival);
+    });
     io.number("time", session.time, limits::seconds);
     io.number("time-step", session.timeStep, limits::seconds);
     io.number("frames", shot.frames, anyCount);

@@ -82,6 +82,16 @@ void Session::setScene(OpenedScene opened) {
     frame = 0;
 }
 
+std::span<const std::string_view> againstNames() {
+    static constexpr std::string_view names[] = {"nothing", "truth", "technique"};
+    return names;
+}
+
+std::span<const std::string_view> compareAsNames() {
+    static constexpr std::string_view names[] = {"wipe", "flip", "side-by-side", "error"};
+    return names;
+}
+
 std::span<const std::string_view> showNames() {
     static constexpr std::string_view names[] = {"lit", "shadow"};
     return names;

@@ -69,6 +69,8 @@ struct OpenedScene {
 // What the picture sets beside the technique, which is A: the truth or technique B.
 enum class Against { Nothing, Truth, Technique };
 enum class CompareAs { Wipe, Flip, SideBySide, Error };
+std::span<const std::string_view> againstNames();   // "nothing", "truth", "technique"
+std::span<const std::string_view> compareAsNames(); // "wipe", "flip", "side-by-side", "error"
 struct Comparison {
     Against against = Against::Nothing;
     CompareAs as = CompareAs::Wipe;

@@ -335,6 +335,7 @@ void Workspace::takeLoaded() {
     renderer_.take(std::move(loaded->prepared));
     const std::string note = loading_.restore ? loading_.restore(session_) : std::string();
     facts_ = SceneFacts(session_.scene);
+    if (session_.comparison.against == Against::Truth) yardstick_.truthWanted = true;
     playback_ = {};
     viewport_.invalidate();
     viewport_.restart();

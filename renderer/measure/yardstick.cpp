@@ -21,6 +21,8 @@ template <class T> void turnOver(std::vector<T>& texels, int width) {
         std::swap_ranges(low, low + row, high);
 }
 
+} // namespace
+
 std::shared_ptr<const TruthImage> imageOf(const Truth& truth, const TruthKey& key) {
     auto texels = std::make_shared<std::vector<float>>(2 * truth.psi.size());
     const auto width = static_cast<size_t>(truth.width), height = static_cast<size_t>(truth.height);
@@ -32,8 +34,6 @@ std::shared_ptr<const TruthImage> imageOf(const Truth& truth, const TruthKey& ke
         }
     return std::make_shared<const TruthImage>(TruthImage{key, std::move(texels)});
 }
-
-} // namespace
 
 Yardstick::~Yardstick() {
     if (measuring_.valid()) measuring_.wait();

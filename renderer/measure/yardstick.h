@@ -20,6 +20,9 @@ struct Snapshot {
     std::array<std::vector<float>, 2> shadow; // ψ of the technique, and of technique B or empty
 };
 
+// A truth as the pictures of a session show it, if that has the key.
+std::shared_ptr<const TruthImage> imageOf(const Truth& truth, const TruthKey& key);
+
 class Yardstick {
 public:
     explicit Yardstick(TruthCache* cache = nullptr) : cache_(cache) {}

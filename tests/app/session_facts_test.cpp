@@ -34,9 +34,13 @@ public:
         Session s;
         s.setScene(std::move(scene));
         const auto cards = catalogue();
-        s.techniques.choose(cards[static_cast<size_t>(whole(0, static_cast<int>(cards.size()) - 1))]->id);
-        for (Parameter* p : s.techniques.parameters().all())
-            if (coin()) p->set(p->nearest(within({p->spec().min, p->spec().max})));
+        for (TechniqueShelf* shelf : {&s.techniques, &s.rival}) {
+            shelf->choose(cards[static_cast<size_t>(whole(0, static_cast<int>(cards.size()) - 1))]->id);
+            for (Parameter* p : shelf->parameters().all())
+                if (coin()) p->set(p->nearest(within({p->spec().min, p->spec().max})));
+        }
+        s.comparison = {static_cast<Against>(whole(0, 2)), static_cast<CompareAs>(whole(0, 3)),
+                        static_cast<float>(within({0, 1})), coin(), static_cast<float>(within({1, 100}))};
         s.camera = {point(), point(), point(), static_cast<float>(within(limits::fovY))};
         s.light.shape = static_cast<LightShape>(whole(0, 2));
         s.light.position = point();
@@ -83,6 +87,10 @@ TEST_CASE("every fact of a session comes back from a picture") {
         CHECK(read.display.exposure == written.display.exposure);
         CHECK(read.display.ambient == written.display.ambient);
         CHECK(read.techniques.parameters() == written.techniques.parameters());
+        CHECK(read.comparison.against == written.comparison.against);
+        if (written.comparison.against != Against::Nothing) CHECK(read.comparison == written.comparison);
+        if (written.comparison.against == Against::Technique)
+            CHECK(read.rival.parameters() == written.rival.parameters());
         CHECK(read.time == written.time);
         CHECK(read.timeStep == written.timeStep);
         CHECK(read.seed == written.seed);

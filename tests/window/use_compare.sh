@@ -15,6 +15,10 @@ count() { look "$1" | tr -s ' ' '\n' | grep -cE "$2" || true; } # pixels of such
 figure() { (($(count "$rmse" '^([2-4].){3}$') > 400 && $(count "$rmse" '^([c-f].){3}$') > 20)); }
 looksOther() { [[ $(look "$2" | cksum) != "$1" ]]; }
 same() { differ "$1" "$2" && fail "$3" || true; }
+again() { # the same picture comes of what its file tells
+    "$penumbra" capture --like "$1" -o "$folder/again.png" >/dev/null 2>"$folder/stderr" || fail "--like failed"
+    differ "$1" "$folder/again.png" && fail "--like made another picture than $1" || true
+}
 eye() { grep -a -o '"camera":{[^}]*}' "$1" | head -n 1; }
 
 start two-boxes --technique pcss --size 1280x720
@@ -67,12 +71,14 @@ hand key Escape
 last=$plain
 changes true   # the error map that was chosen last
 changes hand key 1 # hard shadows to the right
+again "$last"
 press $scene # folds it, so that what is below stands still
 press $copy
 same "$plain" "$(picture)" "a technique differs from its copy"
 hand key 3
 file=$(picture) || fail "no picture of two side by side"
 [[ $(sizeOf "$file") == 874x689 ]] || fail "two pictures side by side are $(sizeOf "$file")"
+again "$file"
 hand key 0
 hand key y
 figure && fail "there are numbers after the truth was switched off"
