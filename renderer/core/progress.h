@@ -17,6 +17,8 @@ public:
         share_ = share;
         if (cancelled_) throw Cancelled{};
     }
+    // For threads that must not throw.
+    void note(double share) { share_ = share; }
     void cancel() { cancelled_ = true; }
 
     const char* doing() const { return doing_; }

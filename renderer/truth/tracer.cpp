@@ -261,6 +261,7 @@ bool Tracer::next(Progress* progress) {
         const glm::vec2 u = haltonPoint(i);
         haltonX_.push_back(u.x), haltonY_.push_back(u.y);
     }
+    if (progress) progress->report("tracing rays", shareDone(raysTraced_));
     std::atomic<uint64_t> traced{0};
     crew_.shareOut(unfinished_.size(), piece, [&](size_t begin, size_t end) {
         if (progress && progress->cancelled()) return;
@@ -270,18 +271,17 @@ bool Tracer::next(Progress* progress) {
             rays += point.wanted - point.rays;
             trace(point);
         }
-        traced += rays;
+        const uint64_t now = traced += rays;
+        if (progress) progress->note(shareDone(raysTraced_ + now));
     });
     raysTraced_ += traced;
-    if (progress) progress->report("tracing rays", share());
+    if (progress) progress->report("tracing rays", shareDone(raysTraced_));
     estimate();
     return true;
 }
 
-double Tracer::share() const {
-    return raysForeseen_ == 0 ? 1
-                              : std::min(1.0, static_cast<double>(raysTraced_) /
-                                                  static_cast<double>(std::max(raysForeseen_, raysTraced_)));
+double Tracer::shareDone(uint64_t rays) const {
+    return raysForeseen_ == 0 ? 1 : static_cast<double>(rays) / static_cast<double>(std::max(raysForeseen_, rays));
 }
 
 void Tracer::estimate() {

@@ -18,7 +18,6 @@ public:
     bool next(Progress* progress);
     // Of all rounds so far.
     const Truth& truth() const { return truth_; }
-    double share() const; // of all rays, as far as can be foreseen
 
 private:
     // A pixel from which rays are needed.
@@ -34,6 +33,7 @@ private:
     void askAll();
     void dropCertain();
     void trace(Point& point) const;
+    double shareDone(uint64_t rays) const; // of all rays, as far as can be foreseen
     void estimate();
     bool plan();
 
