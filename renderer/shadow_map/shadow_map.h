@@ -37,14 +37,17 @@ glm::vec2 gridShift(uint32_t i);
 
 // What every technique that reads a shadow map lets its user turn.
 struct ShadowMapParameters : ParameterGroup {
-    explicit ShadowMapParameters(ParameterSet& s) : ParameterGroup(s, "Shadow map") {}
+    explicit ShadowMapParameters(ParameterSet& s, double largest = 16384)
+        : ParameterGroup(s, "Shadow map")
+        , largest(largest) {}
+    double largest; // texels along a side
     Integer size{
         set,
         {.id = "map-size",
          .label = "Map size",
          .value = 1024,
          .min = 16,
-         .max = 16384,
+         .max = largest,
          .unit = Unit::Texels,
          .scale = Scale::Logarithmic,
          .source = "Williams 1978",
