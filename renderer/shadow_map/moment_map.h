@@ -11,6 +11,8 @@ using glm::vec3;
 #include "shaders/shared/moments.glsl.h"
 static_assert(sizeof(MomentFilterBlock) == 240 && sizeof(MomentLookupBlock) == 240);
 
+inline constexpr double largestMomentMap = 8192; // texels along a side
+
 struct KernelParameters : ParameterGroup {
     explicit KernelParameters(ParameterSet& s) : ParameterGroup(s, "Kernel") {}
     Integer kernel{set,

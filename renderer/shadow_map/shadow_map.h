@@ -39,21 +39,26 @@ glm::vec2 gridShift(uint32_t i);
 
 // What every technique that reads a shadow map lets its user turn.
 struct ShadowMapParameters : ParameterGroup {
-    explicit ShadowMapParameters(ParameterSet& s, Faces defaultFaces = Faces::Both)
+    struct Options {
+        Faces faces = Faces::Both; // at first
+        double largest = 16384;    // texels along a side
+    };
+    explicit ShadowMapParameters(ParameterSet& s) : ShadowMapParameters(s, Options{}) {}
+    ShadowMapParameters(ParameterSet& s, const Options& options)
         : ParameterGroup(s, "Shadow map")
         , size{set,
                {.id = "map-size",
                 .label = "Map size",
                 .value = 1024,
                 .min = 16,
-                .max = 16384,
+                .max = options.largest,
                 .unit = Unit::Texels,
                 .scale = Scale::Logarithmic,
                 .source = "Williams 1978",
                 .help = "Texels along a side of the shadow map. Finer edges and less bias for more memory and time."}}
         , faces{set,
                 {.id = "faces",
-                 .value = double(defaultFaces),
+                 .value = double(options.faces),
                  .source = "Reeves 1987; Wang and Molnar 1994 (back faces)",
                  .help = "Which faces cast. Both is right for every scene; back faces need no bias on closed objects, "
                          "but leak light at thin ones.",

@@ -17,7 +17,7 @@ namespace {
 double largestExponent(const ParameterSet& set) { return isHalf(set) ? 19.4 : 174; }
 
 struct Parameters : ParameterSet {
-    ShadowMapParameters map{*this};
+    ShadowMapParameters map{*this, {.largest = largestMomentMap}};
     KernelParameters kernel{*this};
     FloatFormatChoice format{*this};
     Real exponent{*this,
@@ -39,17 +39,6 @@ struct Parameters : ParameterSet {
                    .source = "Annen et al. 2008, section 4",
                    .help = "Compares texel by texel where the estimate cannot hold. Without it light leaks wherever "
                            "something farther than the fragment lies within the kernel."}};
-    Real fallbackAbove{*this,
-                       {.id = "fallback-above",
-                        .label = "Fallback above",
-                        .symbol = "ε",
-                        .value = 0.05,
-                        .min = 0,
-                        .max = 1,
-                        .source = "Annen et al. 2008, section 4",
-                        .help = "By how much the estimate must exceed full visibility before it is doubted.",
-                        .active = [](const ParameterSet& set) { return set.at("fallback").value() != 0; },
-                        .inactiveReason = "there is no fallback"}};
     BiasParameters bias{*this, {.slope = 0.05, .normalOffset = 0.5}};
 };
 

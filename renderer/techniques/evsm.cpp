@@ -16,7 +16,7 @@ enum class Components { Two, Four };
 constexpr std::string_view componentNames[] = {"2", "4"};
 
 struct Parameters : ParameterSet {
-    ShadowMapParameters map{*this};
+    ShadowMapParameters map{*this, {.largest = largestMomentMap}};
     KernelParameters kernel{*this};
     FloatFormatChoice format{*this};
     Choice<Components> components{

@@ -188,7 +188,7 @@ struct Parameters : ParameterSet {
                      .source = "Valient, de Boer eq. 1 (r is the light's own)",
                      .help = "Widens or narrows the penumbrae beyond what the light's size r gives. 1 is the light "
                              "itself; anything else departs from the truth."}};
-    ShadowMapParameters map{*this, Faces::Back};
+    ShadowMapParameters map{*this, {.faces = Faces::Back}};
     BiasParameters bias{*this, {.slope = 0.05, .normalOffset = 0.5}};
 };
 

@@ -11,7 +11,7 @@ namespace penumbra {
 namespace {
 
 struct Parameters : ParameterSet {
-    ShadowMapParameters map{*this};
+    ShadowMapParameters map{*this, {.largest = largestMomentMap}};
     KernelParameters kernel{*this};
     MomentParameters moments{*this, MomentFormat::Unorm16Optimised};
     MomentBias momentBias{*this};

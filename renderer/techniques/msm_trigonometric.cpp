@@ -21,7 +21,7 @@ double usualBias(const ParameterSet& set) {
 }
 
 struct Parameters : ParameterSet {
-    ShadowMapParameters map{*this};
+    ShadowMapParameters map{*this, {.largest = largestMomentMap}};
     KernelParameters kernel{*this};
     Choice<StoredAs> format{*this,
                             {.id = "format",

@@ -21,7 +21,7 @@ double usualVariance(const ParameterSet& set) {
 }
 
 struct Parameters : ParameterSet {
-    ShadowMapParameters map{*this};
+    ShadowMapParameters map{*this, {.largest = largestMomentMap}};
     KernelParameters kernel{*this};
     MomentParameters moments{*this, MomentFormat::Float32};
     Real minimumVariance{*this,

@@ -3,6 +3,9 @@
 // renderer/techniques/esm.cpp.
 #include "moment_lookup.glsl"
 
+// How far the estimate may exceed full visibility before it is doubted: rounding and the slope of what is nearly flat.
+const float tolerance = 0.05;
+
 float weightWithin(int i, int half_n) { return abs(i) <= half_n ? kernelWeight(i) : 0.0; }
 
 // The kernel's Gaussian over comparisons with the receiver's plane, bilinear as the map's lookup is: along one axis texel i
@@ -29,7 +32,7 @@ void main()
     Receiver r = findReceiver(normalOffset);
     MomentLookup m = findMoments(r, depthBias, slopeBias);
     float visible = momentsAt(m.place).x * exp(-lookup.depth_exponents.z * clamp(m.depth, -0.5, 0.5));
-    bool doubted = fallback != 0 && !(visible <= 1.0 + fallbackAbove) && !m.known && r.known < 0.0;
+    bool doubted = fallback != 0 && !(visible <= 1.0 + tolerance) && !m.known && r.known < 0.0;
     float filtered = compared(r, doubted ? kernel / 2 : -2);
     writeMomentShadow(r, m, clamp(doubted ? filtered : 1.0 - visible, 0.0, 1.0));
 }
