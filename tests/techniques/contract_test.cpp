@@ -25,6 +25,13 @@ std::shared_ptr<const Scene> boxesOverFloor() {
     return SceneBuilder().floor(3).box({-1, 0, -1}, {0, 1, 0}).box({0.2f, 0.8f, 0.2f}, {0.9f, 1.0f, 1.4f}).build();
 }
 
+// At defaults but for a small map, where many frames are drawn.
+Session quickSession(std::shared_ptr<const Scene> scene, std::string_view technique) {
+    Session s = session(std::move(scene), technique);
+    if (Parameter* size = s.techniques.parameters().find("map-size")) size->set(256);
+    return s;
+}
+
 bool hasHistory() { return !renderer().flow().pasts().empty(); } // what was drawn last
 
 // Finite and in [0, 1] everywhere, and silence from the driver.
@@ -109,8 +116,9 @@ TEST_CASE("a surface turned away from the whole light is dark without any map") 
 
 TEST_CASE("every parameter at its minimum, default and maximum gives a finite ψ in [0, 1]") {
     for (const Card* card : catalogue()) {
-        Session s = session(boxesOverFloor(), card->id);
+        Session s = quickSession(boxesOverFloor(), card->id);
         for (Parameter* p : s.techniques.parameters().all()) {
+            const double before = p->value();
             for (const double value :
                  {p->spec().min, p->defaultValue(),
                   std::min(p->spec().max, tooLarge(*p, p->spec().max) ? largestMap : p->spec().max)}) {
@@ -118,7 +126,7 @@ TEST_CASE("every parameter at its minimum, default and maximum gives a finite ψ
                 p->set(p->nearest(value));
                 checkSane(s);
             }
-            p->reset();
+            p->set(before);
         }
     }
 }
@@ -146,7 +154,7 @@ TEST_CASE("extreme scenes, lights and views give a finite ψ in [0, 1]") {
         CAPTURE(card->id);
         const auto with = [&](std::shared_ptr<const Scene> scene, auto&& change) {
             for (const LightShape shape : {LightShape::Rectangle, LightShape::Disk, LightShape::Directional}) {
-                Session s = session(scene, card->id);
+                Session s = quickSession(scene, card->id);
                 s.light.shape = shape;
                 change(s);
                 checkSane(s);
@@ -265,13 +273,15 @@ TEST_CASE("a parameter says that it is without effect exactly when no value of i
                            .quad({-1, 0.5f, 0.5f}, {-1, 0.5f, 1.5f}, {0, 0.5f, 1.5f}, {0, 0.5f, 0.5f})
                            .build();
     for (const Card* card : catalogue()) {
-        Session s = session(scene, card->id);
+        Session s = quickSession(scene, card->id);
         s.light.position = {1.5f, 3, 1}; // slanting, so that biases matter
         const ParameterSet& set = s.techniques.parameters();
         (void)draw(s);
         const bool history = hasHistory();
-        if (history) s.scene = wavingScene(); // its board is open
-        if (Parameter* size = set.find("map-size")) size->set(history ? 128 : 256);
+        if (history) {
+            s.scene = wavingScene(); // its board is open
+            set.at("map-size").set(128);
+        }
         std::vector<bool> usually;
         for (const Parameter* p : set.all()) usually.push_back(p->active());
         const auto hasEffect = [&](Parameter& p, const std::vector<float>& plain) {
