@@ -12,7 +12,9 @@
 // The disk is of the light's shape, so that a rectangular light has a rectangle; a directional light's radius is
 // d2 tan α. Exact for a light, an occluder and a receiver that are parallel. Memory: 4 bytes a texel of the map, and 48
 // to 56 with pre-processing; 2 reads of the map a pixel that is not filtered.
+#include "renderer/core/hash.h"
 #include "renderer/core/technique.h"
+#include "renderer/shadow_map/poisson_disk.h"
 #include "renderer/shadow_map/shadow_map.h"
 
 #include <algorithm>
@@ -27,6 +29,8 @@ namespace {
 constexpr int largestRadius = 256, mostSamples = 256;
 constexpr int pointsInSet = 64; // of a row of the noise map and of the constants
 constexpr int noiseRows = 32;
+constexpr int filterTaps = 32;   // vectors of two
+constexpr int mostFrames = 4096; // that are accumulated; 256 samples each are whole numbers in a float still
 
 enum class Preparation { Flood, Separable, Published, None, NoneCorrected };
 enum class Noise { RandomStart, Interpolated, OneDimensional, Constants };
@@ -188,6 +192,18 @@ struct Parameters : ParameterSet {
                      .source = "Valient, de Boer eq. 1 (r is the light's own)",
                      .help = "Widens or narrows the penumbrae beyond what the light's size r gives. 1 is the light "
                              "itself; anything else departs from the truth."}};
+    Flag accumulate{*this,
+                    {.id = "accumulate",
+                     .value = 0,
+                     .source = "ours",
+                     .help = "While nothing moves, each frame takes other samples, and the picture is the mean of "
+                             "all. Noise goes away; what else is wrong stays."}};
+    Flag filter{*this,
+                {.id = "neighbourhood-filter",
+                 .value = 0,
+                 .source = "Scherzer 2009, 3.3 (the filter of temporal)",
+                 .help = "Averages the samples of neighbours that lie on the same surface, over half the penumbra's "
+                         "width, where they are few. Smooth penumbrae for a few more reads; small ones get wider."}};
     ShadowMapParameters map{*this, {.faces = Faces::Back}};
     BiasParameters bias{*this, {.slope = 0.05, .normalOffset = 0.5}};
 };
@@ -262,6 +278,13 @@ constexpr Channel rowChannels[] = {
 constexpr Channel floodChannels[] = {
     {"x", "", "centre of the nearest hard boundary's texel; 0: none yet", Unit::Texels},
     {"y", "", "centre of the nearest hard boundary's texel; 0: none yet", Unit::Texels}};
+// A history as renderer/techniques/temporal.cpp keeps it, so that its filter can show it.
+constexpr Channel sampleChannels[] = {
+    {"rho", "ρ", "samples of the disk that are hidden from the light's centre", Unit::Samples},
+    {"n", "n", "samples of the disk; the most there may be where none were needed", Unit::Samples},
+    {"depth", "d", "distance along the view axis; 0: no surface", Unit::Metres},
+    {"blocker", "d_b", "depth of the occluder that the disk was sized for, along the light's axis; 0: not filtered",
+     Unit::Metres}};
 constexpr Channel regionChannels[] = {
     {"region", "", "0: no surface, 1: lit, 2: outer penumbra, 3: inner penumbra, 4: umbra or turned away", Unit::None,
      0, 4},
@@ -273,12 +296,24 @@ struct JumpConstants {
 
 struct DiskConstants {
     ResolveConstants resolve;
-    vec4 noiseShift;             // xy = texels by which the noise map is shifted
+    vec4 shift_turn;             // as the shader has it
     vec4 table[pointsInSet / 2]; // the constants, two to a vector
+};
+
+struct FilterConstants {
+    ResolveConstants resolve;
+    vec4 forwardScale;     // xyz the view axis, w = pixels² per m² at eye depth 1
+    vec4 taps[filterTaps]; // of the unit disk, two to a vector
 };
 
 class FractionalDisk final : public Technique {
 public:
+    FractionalDisk() {
+        // All of the penumbra's noise is averaged, until the samples themselves are many.
+        const auto set = [&](std::string_view id, double value) { filter_->parameters().at(id).set(value); };
+        set("s-min", 0.01), set("s-max", 0.03), set("few-samples", 0);
+    }
+
     ParameterSet& parameters() override { return parameters_; }
     std::optional<TextureReads> readsPerPixel() const override {
         const bool prepared = prepares(parameters_), searches = parameters_.preparation == Preparation::NoneCorrected;
@@ -290,15 +325,44 @@ public:
 
     Image build(Flow& flow, Scope scope, const Inputs& inputs) const override {
         const ShadowMap map = drawShadowMap(flow, scope, inputs, describeMap(inputs));
+        if (!parameters_.accumulate && !parameters_.filter)
+            return sample(flow, scope, inputs, map, {}, {"shadow", Format::R32F, {}, shadowChannels()});
+        // Samples and their number, to be shown by a pass of its own.
+        const Extent extent{inputs.view.size.x, inputs.view.size.y};
+        const ImageSpec samples{"samples", Format::RGBA32F, extent, sampleChannels};
+        std::optional<PastImage> past;
+        if (parameters_.accumulate) past = flow.past(scope, samples, historyKey(inputs));
+        if (past && past->age() >= mostFrames) flow.finish(*past);
+        return show(flow, scope, inputs, map.view, sample(flow, scope, inputs, map, past, samples));
+    }
+
+private:
+    // Writes ψ, or the samples and their number where `writes` has room for them.
+    Image sample(Flow& flow, Scope scope, const Inputs& inputs, const ShadowMap& map,
+                 const std::optional<PastImage>& past, const ImageSpec& writes) const {
+        const bool keeps = writes.format == Format::RGBA32F;
         const bool prepared = prepares(parameters_), round = inputs.light.shape != LightShape::Rectangle;
-        const Extent extent{inputs.pictureSize().x, inputs.pictureSize().y};
-        DiskConstants constants{resolveConstants(inputs, map.view), vec4(0), {}};
+        const glm::ivec2 size = keeps ? inputs.view.size : inputs.pictureSize();
+        // Each frame starts elsewhere in the noise map, with its points turned or shifted.
+        const auto frame = static_cast<uint32_t>(past ? past->age() : 0);
+        const vec2 offset = glm::fract(r2Point(frame) + haltonPoint(inputs.seed));
+        const float angle = float(2 * M_PI) * r2Point(frame).x;
+        const vec2 turn = round ? vec2(std::cos(angle), std::sin(angle)) : r2Point(frame);
+        DiskConstants constants{resolveConstants(inputs, map.view, keeps),
+                                vec4(glm::floor(offset * vec2(pointsInSet, noiseRows)), turn),
+                                {}};
         Resolver resolver{.shader = "techniques/fractional_disk.glsl",
                           .table = pointsInSet / 2,
+                          .writes = writes.name,
+                          .channels = writes.channels,
                           .defines = {{"PREPARED", prepared ? 1 : 0}},
-                          .also = {{"regions", Format::RG16F, extent, regionChannels}}};
+                          .format = writes.format,
+                          .withMargin = keeps,
+                          .also = {{"regions", Format::RG16F, {size.x, size.y}, regionChannels}}};
+        if (keeps) resolver.defines.push_back({past ? "ACCUMULATES" : "KEEPS_SAMPLES"});
         if (map.view.range.w != 0) resolver.defines.push_back({"RADIAL_METRIC"});
         PassReads reads = {{"shadowMap", map.depth}};
+        if (past) reads.push_back({"history", *past});
         if (prepared) reads.push_back({"prepared", prepare(flow, scope, map)});
         if (parameters_.noise == Noise::Constants) {
             static const std::array<vec2, pointsInSet> sets[] = {lightPoints(false, 0), lightPoints(true, 0)};
@@ -312,7 +376,47 @@ public:
         return resolve(flow, scope, inputs, resolver, reads, parameters_)[0];
     }
 
-private:
+    // By the filter of the technique that has one for its histories, or, with it off, the mean of the samples alone.
+    Image show(Flow& flow, Scope scope, const Inputs& inputs, const LightViewBlock& light, Image samples) const {
+        const View& view = inputs.view;
+        FilterConstants constants{
+            resolveConstants(inputs, light),
+            vec4(glm::normalize(glm::cross(view.rayDy, view.rayDx)), 1 / glm::dot(view.rayDx, view.rayDx)),
+            {}};
+        constants.resolve.lightView.light.x *= parameters_.lightScale;
+        constants.resolve.lightView.light.y *= parameters_.lightScale;
+        ParameterSet& filter = filter_->parameters();
+        Parameter& neighbourhood = filter.at("neighbourhood");
+        neighbourhood.setText(parameters_.filter ? "poisson" : "off");
+        int i = 0;
+        for (const vec2 p : poissonDisk(static_cast<int>(filter.at("taps").value()))) {
+            vec4& pair = constants.taps[i / 2];
+            (i % 2 ? pair.z : pair.x) = p.x;
+            (i % 2 ? pair.w : pair.y) = p.y;
+            ++i;
+        }
+        return resolve(flow, scope, inputs,
+                       {.shader = "techniques/temporal_filter.glsl",
+                        .constants = constants,
+                        .table = filterTaps,
+                        .pass = "filter"},
+                       {{"shadowBuffer", samples}}, filter);
+    }
+
+    // Of all that the samples depend on.
+    uint64_t historyKey(const Inputs& inputs) const {
+        Hash hash;
+        const ViewBlock view = viewBlock(inputs.view);
+        hash.addBytes(&view, sizeof(view));
+        static_assert(sizeof(AreaLight) == 13 * sizeof(float));
+        hash.addBytes(&inputs.light, sizeof(inputs.light));
+        hash.add(inputs.poseVersion);
+        hash.add(inputs.seed);
+        for (const Parameter* parameter : parameters_.all())
+            if (parameter != &parameters_.filter) hash.add(parameter->bits()); // nothing filtered is kept
+        return hash.value();
+    }
+
     ShadowMapDescription describeMap(const Inputs& inputs) const {
         static constexpr Metric metrics[] = {Metric::Radial, Metric::RadialOfVertices, Metric::Axial};
         ShadowMapDescription description = parameters_.map.describe();
@@ -365,6 +469,7 @@ private:
     }
 
     Parameters parameters_;
+    std::unique_ptr<Technique> filter_ = makeTechnique(findCard("temporal"));
 };
 
 } // namespace

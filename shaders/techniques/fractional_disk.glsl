@@ -3,7 +3,10 @@
 //
 // Texture reads: depth, normal, 1 of the map; where it filters, a sample costs 1 of the map and, but for constants, 1 of
 // the noise map; without pre-processing lit pixels search with as many samples first.
-#define OWN_CONSTANTS vec4 noiseShift; // xy = texels by which the noise map is shifted
+#define OWN_CONSTANTS vec4 shift_turn; // xy = texels by which the noise map is shifted; zw = see turned()
+#ifdef ACCUMULATES
+#define KEEPS_SAMPLES
+#endif
 #include "shadow_lookup.glsl"
 #include "lib/fractional_disk.glsl"
 #include "lib/sampling.glsl"
@@ -14,12 +17,29 @@ uniform sampler2D prepared; // depth, depth of the nearest occluder, inverse dis
 #if NOISE != NOISE_CONSTANTS
 uniform sampler2D noise; // rows of points in the disk of the light's shape, from [−1, 1] to [0, 1]; two random numbers
 #endif
+#ifdef KEEPS_SAMPLES
+uniform writeonly image2D samples; // hidden ones, all, eye depth [m], depth of the occluder [m]
+#endif
+#ifdef ACCUMULATES
+uniform sampler2D history; // the same of the frames before
+#endif
 uniform writeonly image2D regions;
 
 const bool slipNoise = LISTING == LISTING_NOISE || LISTING == LISTING_AS_PRINTED;
 const bool slipEarlyOut = LISTING == LISTING_EARLY_OUT || LISTING == LISTING_AS_PRINTED;
 const bool slipSum = LISTING == LISTING_SUM || LISTING == LISTING_AS_PRINTED;
-const int pointsInSet = 64; // of a row of the noise map, or of the constants
+
+// Accumulated frames turn the points of a round light by zw = (cos, sin) and shift those of a rectangle on the torus.
+vec2 turned(vec2 p)
+{
+#ifndef ACCUMULATES
+    return p;
+#elif ROUND
+    return vec2(shift_turn.z * p.x - shift_turn.w * p.y, shift_turn.w * p.x + shift_turn.z * p.y);
+#else
+    return 2.0 * fract(0.5 * p + shift_turn.zw) - 1.0;
+#endif
+}
 
 // A point of the light's shape in [−1, 1]², the i-th of a pixel.
 vec2 samplePoint(ivec2 start, int i)
@@ -30,18 +50,18 @@ vec2 samplePoint(ivec2 start, int i)
     vec2 p = (i & 1) == 0 ? pair.xy : pair.zw;
     p = (i & 64) == 0 ? p : vec2(-p.y, p.x);
     p = (i & 128) == 0 ? p : -p;
-    return slipNoise ? 0.5 * p + 0.5 : p;
 #else
     ivec2 size = textureSize(noise, 0);
     ivec2 texel = ivec2((start.x + i) & (size.x - 1), (start.y + i / size.x) & (size.y - 1));
-    vec2 p = texelFetch(noise, texel, 0).xy;
-    return slipNoise ? p : 2.0 * p - 1.0;
+    vec2 p = 2.0 * texelFetch(noise, texel, 0).xy - 1.0;
 #endif
+    p = turned(p);
+    return slipNoise ? 0.5 * p + 0.5 : p;
 }
 
 ivec2 firstSample(ivec2 pixel)
 {
-    ivec2 shifted = pixel + ivec2(noiseShift.xy);
+    ivec2 shifted = pixel + ivec2(shift_turn.xy);
 #if NOISE == NOISE_CONSTANTS
     return ivec2(0);
 #elif NOISE == NOISE_ONE_DIMENSIONAL
@@ -140,7 +160,8 @@ void main()
 
     // The disk's half size, from the receiver's own occluder or, where it is lit, from the nearest.
     float occluder = hard ? own.x : own.y;
-    vec2 q = diskTexelsHalf(disk, occluderDepth(disk, occluder, corner + 0.5 - l.texel), radius);
+    float sized = occluderDepth(disk, occluder, corner + 0.5 - l.texel);
+    vec2 q = diskTexelsHalf(disk, sized, radius);
 #if PREPARED
     // The boundary is known to a texel.
     bool nearby = nearBoundary(own.z, radius, max(q.x, q.y) + 1.0);
@@ -153,20 +174,22 @@ void main()
     float nearest = disk.depth;
     int searched = asks && !hard ? maxSamples : 0;
     for (int i = 0; i < searched; ++i) nearest = min(nearest, occluderAt(disk, l.texel, samplePoint(start, i) * radius));
-    q = hard ? q : diskTexelsHalf(disk, nearest, radius);
+    sized = hard ? sized : nearest;
+    q = diskTexelsHalf(disk, sized, radius);
     filters = asks && (hard || nearest < disk.depth);
 #else
-    q = hard ? q : vec2(min(1.0, radius)); // the least: a texel
+    sized = hard ? sized : disk.depth;
+    q = hard ? q : vec2(1.0); // the least: a texel
 #endif
 #endif
 
     float texels = diskTexels(q, roundLight);
-    float samples = min(sampleCount(texels, texelsPerSample), float(maxSamples));
+    float number = min(sampleCount(texels, texelsPerSample), float(maxSamples));
     // Of a disk that is far from the viewer, no more for each pixel that its area takes on the screen.
     float metresPerPixel = length(view.rayDx.xyz) * r.eyeDepth;
     float pixels = texels / max(disk.texelsPerMetre * disk.texelsPerMetre * metresPerPixel * metresPerPixel, 1e-12);
-    samples = samplesPerPixel > 0.0 ? min(samples, ceil(pixels * samplesPerPixel)) : samples;
-    int count = filters ? int(max(samples, 1.0)) : 0;
+    number = samplesPerPixel > 0.0 ? min(number, ceil(pixels * samplesPerPixel)) : number;
+    int count = filters ? int(max(number, 1.0)) : 0;
     float lit = slipSum && !hard ? 1.0 : 0.0;
     for (int i = 0; i < count; ++i)
         lit += occluderAt(disk, l.texel, samplePoint(start, i) * q) < disk.depth ? 0.0 : 1.0;
@@ -176,5 +199,16 @@ void main()
     bool shadowed = r.known >= 0.0 ? r.known > 0.0 : psi == 1.0 && count == 0 ? true : hard;
     int region = r.eyeDepth > 0.0 ? regionOf(shadowed, count > 0) : regionNone;
     imageStore(regions, r.pixel, vec4(float(region), float(count), 0.0, 0.0));
+#ifdef KEEPS_SAMPLES
+    // What needs no sample counts as many as there may be, all alike.
+    float n = count > 0 ? float(count) : float(maxSamples);
+    float d_b = count > 0 ? (sized == 0.0 ? 1e-6 : sized) : 0.0;
+    vec4 kept = vec4(n * (r.known >= 0.0 ? r.known : psi), n, r.eyeDepth, d_b);
+#ifdef ACCUMULATES
+    kept.xy += texelFetch(history, r.pixel, 0).xy;
+#endif
+    imageStore(samples, r.pixel, r.eyeDepth > 0.0 ? kept : vec4(0.0));
+#else
     writeShadow(r, psi);
+#endif
 }

@@ -27,6 +27,13 @@ std::shared_ptr<const Scene> boxesOverFloor() {
     return SceneBuilder().floor(3).box({-1, 0, -1}, {0, 1, 0}).box({0.2f, 0.8f, 0.2f}, {0.9f, 1.0f, 1.4f}).build();
 }
 
+// At defaults but for a small map, where many frames are drawn.
+Session quickSession(std::shared_ptr<const Scene> scene, std::string_view technique) {
+    Session s = session(std::move(scene), technique);
+    if (Parameter* size = s.techniques.parameters().find("map-size")) size->set(256);
+    return s;
+}
+
 bool hasHistory() { return !renderer().flow().pasts().empty(); } // what was drawn last
 
 // Finite and in [0, 1] everywhere, and silence from the driver.
@@ -67,13 +74,6 @@ std::vector<float> shown(Session& s) {
     }
     s.camera = camera, s.light = light, s.time = 0;
     return values;
-}
-
-// A session for many pictures: no map larger than they need.
-Session quickSession(std::shared_ptr<const Scene> scene, std::string_view technique) {
-    Session s = session(std::move(scene), technique);
-    if (Parameter* size = s.techniques.parameters().find("map-size")) size->set(largestMap);
-    return s;
 }
 
 // Puts a parameter back where it was.
@@ -297,8 +297,10 @@ TEST_CASE("a parameter says that it is without effect exactly when no value of i
         const ParameterSet& set = s.techniques.parameters();
         (void)draw(s);
         const bool history = hasHistory();
-        if (history) s.scene = wavingScene(); // its board is open
-        if (Parameter* size = set.find("map-size")) size->set(history ? 128 : 256);
+        if (history) {
+            s.scene = wavingScene(); // its board is open
+            set.at("map-size").set(128);
+        }
         std::vector<bool> usually;
         for (const Parameter* p : set.all()) usually.push_back(p->active());
         const auto hasEffect = [&](Parameter& p, const std::vector<float>& plain) {
