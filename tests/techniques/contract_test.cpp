@@ -30,7 +30,7 @@ std::shared_ptr<const Scene> boxesOverFloor() {
 // At defaults but for a small map, where many frames are drawn.
 Session quickSession(std::shared_ptr<const Scene> scene, std::string_view technique) {
     Session s = session(std::move(scene), technique);
-    if (Parameter* size = s.techniques.parameters().find("map-size")) size->set(256);
+    if (Parameter* size = s.techniques.parameters().find("map-size")) size->set(largestMap);
     return s;
 }
 
