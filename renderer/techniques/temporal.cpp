@@ -69,12 +69,21 @@ struct FilterParameters : ParameterGroup {
     Integer taps{set,
                  {.id = "taps",
                   .label = "Neighbours",
-                  .value = 16,
+                  .value = 8,
                   .min = 1,
                   .max = mostTaps,
                   .unit = Unit::Samples,
                   .source = "Scherzer 2009, 4 (16)",
                   .help = "Texels of the shadow buffer that are averaged. Paid only where the error is large.",
+                  .active = filters,
+                  .inactiveReason = filterIsOff}};
+    Flag thinOut{set,
+                 {.id = "thin-out",
+                  .label = "Fewer with age",
+                  .value = 1,
+                  .source = "ours",
+                  .help = "Pixels with more than few samples ask fewer neighbours, so that the filter always averages "
+                          "about as many samples.",
                   .active = filters,
                   .inactiveReason = filterIsOff}};
     Real radiusScale{set,
@@ -390,7 +399,8 @@ struct Parameters : ParameterSet {
 
 struct HistoryConstants {
     ResolveConstants resolve;
-    ViewBlock lastView;
+    vec4 lastX, lastY, lastForward; // from a place relative to the eye [m] to last frame's: d (x, y) [pixels], d [m]
+    vec4 lastRayCorner, lastRayDx, lastRayDy; // of last frame's view
     vec4 keep; // x = most samples that a history keeps in this frame, y = most that one may have
 };
 
@@ -474,13 +484,23 @@ private:
         return glm::fract(point(i) + haltonPoint(seed));
     }
 
+    static HistoryConstants historyConstants(const Inputs& inputs, const LightViewBlock& light, float kept,
+                                             int32_t most) {
+        const View last = inputs.last ? grown(inputs.last->view, inputs.margin) : inputs.view;
+        const glm::dmat3 rays(last.rayDx, last.rayDy, last.rayCorner); // d (x, y, 1) to a place relative to the eye
+        const glm::dmat3 fromPlace = glm::inverse(rays);
+        const glm::dvec3 moved = fromPlace * (glm::dvec3(inputs.view.eyeWorld) - glm::dvec3(last.eyeWorld));
+        const glm::dmat3 rows = glm::transpose(fromPlace);
+        const auto row = [&](int i) { return vec4(glm::dvec4(rows[i], moved[i])); };
+        return {resolveConstants(inputs, light, true), row(0),          row(1), row(2), vec4(last.rayCorner, 0),
+                vec4(last.rayDx, 0),                   vec4(last.rayDy, 0), vec4(kept, most, 0, 0)};
+    }
+
     Image addSample(Flow& flow, Scope scope, const Inputs& inputs, const ShadowMap& map, const PastImage& past,
                     const ImageSpec& buffer, int32_t most) const {
-        const View lastView = inputs.last ? grown(inputs.last->view, inputs.margin) : inputs.view;
         const float kept = lightChanged(inputs) ? float(parameters_.lightMemory) : float(mostFloats);
         Resolver resolver{.shader = "techniques/temporal.glsl",
-                          .constants = HistoryConstants{resolveConstants(inputs, map.view, true), viewBlock(lastView),
-                                                        vec4(kept, most, 0, 0)},
+                          .constants = historyConstants(inputs, map.view, kept, most),
                           .writes = buffer.name,
                           .channels = buffer.channels,
                           .format = buffer.format,

@@ -79,15 +79,13 @@ bool sameSurface(float expected, float stored, float epsilon, bool relative)
 }
 
 // The same for a neighbouring pixel, of which the surface's plane is asked and not its depth: the plane that this pixel's
-// ray meets at depth d is met by the other ray at d · from / along, with `from` and `along` its normal's products with the
-// two rays to eye depth 1. Seen edge on (a factor of two from pixel to pixel) it is d. Without a division.
-bool samePlane(float d, float from, float along, float stored, float epsilon, bool relative)
+// ray r meets at depth d is met by the ray r' at d / tilt, tilt = n·r' / n·r. Seen edge on (a factor of two from pixel to
+// pixel) it is d. Without a division; false for NaN.
+bool samePlane(float d, float tilt, float stored, float epsilon, bool relative)
 {
-    bool level = from * along > 0.0f && abs(along) < 2.0f * abs(from) && abs(from) < 2.0f * abs(along);
-    float expected = level ? d * from : d;
-    float found = level ? stored * along : stored;
-    float unit = level ? abs(along) : 1.0f;
-    return abs(found - expected) < epsilon * (relative ? abs(found) : unit);
+    float level = tilt > 0.5f && tilt < 2.0f ? tilt : 1.0f;
+    float found = stored * level;
+    return abs(found - d) < epsilon * (relative ? abs(found) : level);
 }
 
 // Where the penumbra's edge falls: what a blocker's shadow moves by on the receiver's plane of normal n while the light's

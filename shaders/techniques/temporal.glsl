@@ -4,7 +4,8 @@
 // Texture reads: depth, normal, map, and 1 (nearest) or 4 (bilinear) of the history; where there is none N_b + N_f more of
 // the map.
 #define OWN_CONSTANTS                                                                                                      \
-    ViewBlock lastView;                                                                                                    \
+    vec4 lastX, lastY, lastForward; /* from a place relative to the eye [m] to last frame's: d (x, y) [pixels], d [m] */   \
+    vec4 lastRayCorner, lastRayDx, lastRayDy; /* of last frame's view */                                                   \
     vec4 keep; // x = most samples that a history keeps in this frame, y = most that one may have
 #include "percentage_closer.glsl"
 #include "lib/temporal.glsl"
@@ -27,10 +28,10 @@ struct Found {
 
 // Fetches outside the buffer are 0, which is no history. What does not count is left out by choice: nothing times NaN is
 // NaN.
-void addTexel(inout Found found, ivec2 place, float weight, float d, float from, float along)
+void addTexel(inout Found found, ivec2 place, float weight, float d, float tilt)
 {
     vec4 texel = texelFetch(history, place, 0);
-    bool same = samePlane(d, from, along, abs(texel.z), absoluteTest ? epsilonMetres : epsilon, !absoluteTest);
+    bool same = samePlane(d, tilt, abs(texel.z), absoluteTest ? epsilonMetres : epsilon, !absoluteTest);
     float w = same && sound(History(texel.x, texel.y)) ? weight : 0.0;
     float w_b = texel.w != 0.0 && abs(texel.w) < 1e30 ? w : 0.0;
     found.h.rho += w > 0.0 ? w * texel.x : 0.0;
@@ -54,9 +55,9 @@ Found lookUp(Receiver r)
     return found;
 #else
     // Where the surface was in the last frame [pixels], and its eye depth.
-    vec4 clip = lastView.clipFromWorld * vec4(view.eyeWorld.xyz + r.eyeDepth * r.ray, 1.0);
-    vec2 place = (clip.xy / clip.w * 0.5 + 0.5) * lastView.size.xy;
-    float d = clip.w;
+    vec3 fromEye = r.eyeDepth * r.ray;
+    float d = dot(lastForward.xyz, fromEye) + lastForward.w;
+    vec2 place = vec2(dot(lastX.xyz, fromEye) + lastX.w, dot(lastY.xyz, fromEye) + lastY.w) / d;
 #ifdef MOTION
     // The motion image is in half floats: only things that really moved are taken from it.
     vec3 moved = texelFetch(motion, r.pixel, 0).xyz;
@@ -65,31 +66,26 @@ Found lookUp(Receiver r)
     place = moves ? there : place;
     d = moves ? r.eyeDepth + moved.z : d;
 #endif
-    if (any(lessThan(place, vec2(0.0))) || any(greaterThanEqual(place, lastView.size.xy))) d = -1.0; // no surface has it
-
-    // The products of the surface's normal with the rays of the last view.
-    vec3 n = r.normalWorld;
-    float x = dot(n, lastView.rayDx.xyz);
-    float y = dot(n, lastView.rayDy.xyz);
-    float from = dot(n, lastView.rayCorner.xyz) + place.x * x + place.y * y;
+    // How the products of the surface's normal with the rays of the last view change, relative to the one at `place`.
+    vec2 tilts = vec2(dot(r.normalWorld, lastRayDx.xyz), dot(r.normalWorld, lastRayDy.xyz));
+    float along = dot(r.normalWorld, lastRayCorner.xyz) + dot(place, tilts);
+    tilts /= along;
 #if LOOKUP == LOOKUP_BILINEAR
     // A view at rest must not blur, however long: fractions below 1/256 are rounding.
     vec2 corner = floor(place - 0.5);
     vec2 f = floor((place - 0.5 - corner) * 256.0 + 0.5) / 256.0;
-    vec2 step = corner + 0.5 - place;
-    float along = from + step.x * x + step.y * y;
+    float tilt = 1.0 + dot(corner + 0.5 - place, tilts);
     ivec2 texel = ivec2(corner);
-    addTexel(found, texel, (1.0 - f.x) * (1.0 - f.y), d, from, along);
-    addTexel(found, texel + ivec2(1, 0), f.x * (1.0 - f.y), d, from, along + x);
-    addTexel(found, texel + ivec2(0, 1), (1.0 - f.x) * f.y, d, from, along + y);
-    addTexel(found, texel + ivec2(1, 1), f.x * f.y, d, from, along + x + y);
+    addTexel(found, texel, (1.0 - f.x) * (1.0 - f.y), d, tilt);
+    addTexel(found, texel + ivec2(1, 0), f.x * (1.0 - f.y), d, tilt + tilts.x);
+    addTexel(found, texel + ivec2(0, 1), (1.0 - f.x) * f.y, d, tilt + tilts.y);
+    addTexel(found, texel + ivec2(1, 1), f.x * f.y, d, tilt + tilts.x + tilts.y);
     float whole = 1.0 / max(found.share, 1e-6);
     found.h.rho *= whole;
     found.h.n *= whole;
     found.blocker /= max(found.blockerShare, 1e-6);
 #else
-    vec2 step = floor(place) + 0.5 - place;
-    addTexel(found, ivec2(floor(place)), 1.0, d, from, from + step.x * x + step.y * y);
+    addTexel(found, ivec2(floor(place)), 1.0, d, 1.0 + dot(floor(place) + 0.5 - place, tilts));
 #endif
     return found;
 #endif
@@ -123,38 +119,36 @@ void main()
     tagged = moving || (left && !over);
 #endif
 
-    // The start of a surface that has no history.
     bool fresh = h.n <= 0.0;
-    History start = History(tau, 1.0);
-    float startBlocker = noBlocker;
-#if START != START_HARD && !defined(STILL)
-    vec2 shift = rotate != 0 ? pixelShift(vec2(r.pixel)) : vec2(0.0);
-    vec2 halfLight = lightView.light.xy;
-    Lookup nearer = makeLookup(r, depthBias, slopeBias, receiverPlane != 0, true);
-    int searched = fresh && r.known < 0.0 ? searchTaps : 0;
-    startBlocker = meanBlocker(r, nearer, halfLight, s, shift, searched, 1.0 / float(searchTaps), true);
-#endif
+    h = fresh ? History(tau, 1.0) : withSample(h, tau, keep.y);
 #if START == START_PCSS && !defined(STILL)
-    int filtered = startBlocker > noBlocker ? filterTaps : 0;
-    float psi = filteredShadow(r, nearer, halfLight, s, startBlocker, shift, filtered, 1.0 / float(filterTaps));
-    if (halfLight.x + halfLight.y > 0.0) { // a point needs no estimate
-        start.n = float(startWeight);
-        start.rho = start.n * (r.known >= 0.0 ? r.known : psi);
+    // A point of light needs no estimate.
+    float weight = fresh && lightView.light.x + lightView.light.y > 0.0 ? float(startWeight) : 1.0;
+    h = History(weight * h.rho, weight == 1.0 ? h.n : weight);
+#endif
+    float d = axialDepth(abs(z));
+    float blocker = fresh ? 0.0 : past.blocker;
+    float refined = blocker == 0.0 ? d : withBlocker(blocker, d, h.n, float(blockerWeight));
+    // Directional depths may be 0, which means that nothing blocks.
+    blocker = !blocked ? blocker : refined == 0.0 ? 1e-6 : refined;
+    float depthTag = tagged ? -r.eyeDepth : r.eyeDepth;
+    bool surface = r.eyeDepth > 0.0;
+    imageStore(shadowBuffer, r.pixel, surface ? vec4(h.rho, h.n, depthTag, blocker) : vec4(0.0));
+
+#if START != START_HARD && !defined(STILL)
+    // A surface that has no history starts with an estimate.
+    if (fresh && r.known < 0.0) {
+        vec2 shift = rotate != 0 ? pixelShift(vec2(r.pixel)) : vec2(0.0);
+        vec2 halfLight = lightView.light.xy;
+        Lookup nearer = makeLookup(r, depthBias, slopeBias, receiverPlane != 0, true);
+        float d_b = meanBlocker(r, nearer, halfLight, s, shift, searchTaps, 1.0 / float(searchTaps), true);
+        bool found = d_b > noBlocker;
+#if START == START_PCSS
+        int filtered = found ? filterTaps : 0;
+        float psi = filteredShadow(r, nearer, halfLight, s, d_b, shift, filtered, 1.0 / float(filterTaps));
+        h.rho = halfLight.x + halfLight.y > 0.0 ? h.n * psi : h.rho;
+#endif
+        imageStore(shadowBuffer, r.pixel, vec4(h.rho, h.n, depthTag, found ? d_b : blocker));
     }
 #endif
-    bool found = startBlocker > noBlocker;
-    float blocker = fresh ? (found ? startBlocker : 0.0) : past.blocker;
-    if (fresh)
-        h = start;
-    else
-        h = withSample(h, tau, keep.y);
-
-    float d = axialDepth(abs(z));
-    float refined = blocker == 0.0 ? d : withBlocker(blocker, d, h.n, float(blockerWeight));
-    blocker = blocked && !(fresh && found) ? refined : blocker;
-
-    // Directional depths may be 0, which means that nothing blocks.
-    blocker = blocked && blocker == 0.0 ? 1e-6 : blocker;
-    bool surface = r.eyeDepth > 0.0;
-    imageStore(shadowBuffer, r.pixel, surface ? vec4(h.rho, h.n, tagged ? -r.eyeDepth : r.eyeDepth, blocker) : vec4(0.0));
 }
