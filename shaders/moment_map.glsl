@@ -59,9 +59,9 @@ void main()
     vec4 centre = valueAt(min(texel, last));
     vec4 sum = vec4(0.0);
     for (int i = 1; i <= filtering.kernel.x; ++i) {
-        vec4 before = valueAt(clamp(texel - i * along, ivec2(0), last));
-        vec4 after = valueAt(clamp(texel + i * along, ivec2(0), last));
-        sum += filtering.weights[i >> 2][i & 3] * ((before - centre) + (after - centre));
+        vec4 before = valueAt(max(texel - i * along, 0));
+        vec4 after = valueAt(min(texel + i * along, last));
+        sum += filtering.weights[i].x * ((before - centre) + (after - centre));
     }
     vec4 result = stored(centre + sum);
 #ifdef ROWS

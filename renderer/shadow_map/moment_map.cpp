@@ -94,10 +94,10 @@ glm::vec2 depthScale(DepthSign sign) { return sign == DepthSign::Signed ? glm::v
 
 } // namespace
 
-double planeDeviation(const ParameterSet& set) {
+double planeBias(const ParameterSet& set) {
     const Gaussian gaussian(static_cast<int>(set.at("kernel").value()), set.at("sigma").value());
     constexpr double bilinear = 0.25; // variance at most
-    return std::sqrt(gaussian.variance() + bilinear);
+    return 0.5 * std::sqrt(gaussian.variance() + bilinear);
 }
 
 bool isHalf(const ParameterSet& set) { return set.at("format").value() == double(FloatFormat::Float16); }
@@ -152,7 +152,7 @@ MomentMap drawMomentMap(Flow& flow, Scope scope, const Inputs& inputs, const Mom
                             .depth_exponents = glm::vec4(description.depth, description.exponents),
                             .kernel = {gaussian.half, 0, 0, 0},
                             .weights = {}};
-    for (int i = 0; i <= gaussian.half; ++i) block.weights[i / 4][i % 4] = static_cast<float>(gaussian.weights[i]);
+    for (int i = 0; i <= gaussian.half; ++i) block.weights[i].x = static_cast<float>(gaussian.weights[i]);
     const Extent extent{.width = description.map.size, .height = description.map.size};
     const bool encoded = description.storedFromMoments != dmat4(1) || description.storedOffset != dvec4(0);
     const auto filter = [&](std::string_view name, Image source, bool fromDepth, bool rows) {
@@ -171,7 +171,7 @@ MomentMap drawMomentMap(Flow& flow, Scope scope, const Inputs& inputs, const Mom
     const bool wide = gaussian.half > 0;
     const Image source = wide ? filter("moments-of-rows", map.depth, true, true) : map.depth;
     MomentMap result{filter("moments", source, !wide, false), map.depth, map.view, {}};
-    std::copy(std::begin(block.weights), std::end(block.weights), result.weights);
+    for (int i = 0; i <= gaussian.half; ++i) result.weights[i / 4][i % 4] = block.weights[i].x;
     return result;
 }
 

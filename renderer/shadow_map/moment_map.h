@@ -9,7 +9,7 @@ namespace penumbra {
 
 using glm::vec3;
 #include "shaders/shared/moments.glsl.h"
-static_assert(sizeof(MomentFilterBlock) == 240 && sizeof(MomentLookupBlock) == 240);
+static_assert(sizeof(MomentFilterBlock) == 624 && sizeof(MomentLookupBlock) == 240);
 
 inline constexpr double largestMomentMap = 8192; // texels along a side
 
@@ -43,9 +43,10 @@ struct KernelParameters : ParameterGroup {
     End end{set};
 };
 
-// Where the kernel's σ and that of bilinear sampling put a plane's depths: within so many texels of the receiver's own.
-// A bound of four moments is 0 up to one σ before their mean if they are symmetric about it.
-double planeDeviation(const ParameterSet& set);
+// The slope bias of bounds by four moments: half of the deviation that a kernel, with bilinear sampling, finds in the
+// depths of a plane that rises by 1 a texel. At their mean such a bound is up to 0.17 on a lit slope, half a deviation
+// before it 0.04 and one deviation before it nothing; contacts leak light in return.
+double planeBias(const ParameterSet& set);
 
 enum class MomentFormat { Float32, Float16, Unorm16, Unorm16Optimised };
 inline constexpr std::string_view momentFormatNames[] = {"32f", "16f", "unorm16", "unorm16-optimised"};

@@ -79,7 +79,7 @@ struct Parameters : ParameterSet {
                    .help =
                        "Visibility up to this counts as none and what is above is stretched. Hides light that leaks "
                        "where two casters overlap; thins out penumbrae."}};
-    BiasParameters bias{*this, {.slope = 0, .normalOffset = 0.5, .slopeFrom = planeDeviation}};
+    BiasParameters bias{*this, {.slope = 0.5, .normalOffset = 0.5}};
 };
 
 class Evsm final : public Technique {

@@ -15,7 +15,7 @@ struct Parameters : ParameterSet {
     KernelParameters kernel{*this};
     MomentParameters moments{*this, MomentFormat::Unorm16Optimised};
     MomentBias momentBias{*this};
-    BiasParameters bias{*this, {.slope = 0, .normalOffset = 0.5, .slopeFrom = planeDeviation}};
+    BiasParameters bias{*this, {.slope = 0, .normalOffset = 0, .slopeFrom = planeBias}};
 };
 
 class MsmHamburger final : public Technique {

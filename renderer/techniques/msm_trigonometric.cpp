@@ -51,7 +51,7 @@ struct Parameters : ParameterSet {
                  .source = "ours; Münstermann et al. 2018 (wrapping zone)",
                  .help = "Sines take the near end for the far end. This share of the circle stays empty before the "
                          "nearest depth, so that what casts there is not lost."}};
-    BiasParameters bias{*this, {.slope = 0, .normalOffset = 0.5, .slopeFrom = planeDeviation}};
+    BiasParameters bias{*this, {.slope = 0, .normalOffset = 0, .slopeFrom = planeBias}};
 };
 
 class MsmTrigonometric final : public Technique {
