@@ -57,7 +57,7 @@ inline constexpr std::string_view depthSignNames[] = {"unsigned", "signed"};
 
 // Of techniques that keep powers of the depth.
 struct MomentParameters : ParameterGroup {
-    MomentParameters(ParameterSet& s, MomentFormat usual)
+    MomentParameters(ParameterSet& s, MomentFormat usual, DepthSign usualSign)
         : ParameterGroup(s, "Moments")
         , format{set,
                  {.id = "format",
@@ -70,7 +70,7 @@ struct MomentParameters : ParameterGroup {
         , depthSign{set,
                     {.id = "depth-range",
                      .label = "Depth range",
-                     .value = double(DepthSign::Unsigned),
+                     .value = double(usualSign),
                      .source = "unsigned: Peters and Klein 2015; signed: Peters et al. 2017",
                      .help = "Moments of depths in [0, 1] or in [−1, 1]. The latter are known more exactly, above all "
                              "in the middle, and need less bias.",

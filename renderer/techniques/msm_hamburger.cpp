@@ -13,7 +13,7 @@ namespace {
 struct Parameters : ParameterSet {
     ShadowMapParameters map{*this, {.largest = largestMomentMap}};
     KernelParameters kernel{*this};
-    MomentParameters moments{*this, MomentFormat::Unorm16Optimised};
+    MomentParameters moments{*this, MomentFormat::Unorm16Optimised, DepthSign::Signed};
     MomentBias momentBias{*this};
     BiasParameters bias{*this, {.slope = 0, .normalOffset = 0, .slopeFrom = planeBias}};
 };

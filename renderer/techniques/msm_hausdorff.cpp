@@ -10,7 +10,7 @@ namespace {
 struct Parameters : ParameterSet {
     ShadowMapParameters map{*this, {.largest = largestMomentMap}};
     KernelParameters kernel{*this};
-    MomentParameters moments{*this, MomentFormat::Unorm16Optimised};
+    MomentParameters moments{*this, MomentFormat::Unorm16Optimised, DepthSign::Unsigned};
     MomentBias momentBias{*this};
     BiasParameters bias{*this, {.slope = 0, .normalOffset = 0, .slopeFrom = planeBias}};
 };

@@ -23,7 +23,7 @@ double usualVariance(const ParameterSet& set) {
 struct Parameters : ParameterSet {
     ShadowMapParameters map{*this, {.largest = largestMomentMap}};
     KernelParameters kernel{*this};
-    MomentParameters moments{*this, MomentFormat::Float32};
+    MomentParameters moments{*this, MomentFormat::Float32, DepthSign::Unsigned};
     Real minimumVariance{*this,
                          {.id = "minimum-variance",
                           .label = "Minimum variance",
