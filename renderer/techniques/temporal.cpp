@@ -492,8 +492,14 @@ private:
         const glm::dvec3 moved = fromPlace * (glm::dvec3(inputs.view.eyeWorld) - glm::dvec3(last.eyeWorld));
         const glm::dmat3 rows = glm::transpose(fromPlace);
         const auto row = [&](int i) { return vec4(glm::dvec4(rows[i], moved[i])); };
-        return {resolveConstants(inputs, light, true), row(0),          row(1), row(2), vec4(last.rayCorner, 0),
-                vec4(last.rayDx, 0),                   vec4(last.rayDy, 0), vec4(kept, most, 0, 0)};
+        return {resolveConstants(inputs, light, true),
+                row(0),
+                row(1),
+                row(2),
+                vec4(last.rayCorner, 0),
+                vec4(last.rayDx, 0),
+                vec4(last.rayDy, 0),
+                vec4(kept, most, 0, 0)};
     }
 
     Image addSample(Flow& flow, Scope scope, const Inputs& inputs, const ShadowMap& map, const PastImage& past,
