@@ -311,7 +311,7 @@ public:
     FractionalDisk() {
         // All of the penumbra's noise is averaged, until the samples themselves are many.
         const auto set = [&](std::string_view id, double value) { filter_->parameters().at(id).set(value); };
-        set("s-min", 0.01), set("s-max", 0.03), set("few-samples", 0);
+        set("s-min", 0.01), set("s-max", 0.03), set("few-samples", 0), set("taps", 16), set("thin-out", 0);
     }
 
     ParameterSet& parameters() override { return parameters_; }
