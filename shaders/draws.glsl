@@ -14,6 +14,7 @@ layout(location = 8) in vec4 lastWorldFromModel[3]; // of the frame before
 #ifdef VERTEX_COLOURS
 layout(location = 11) in vec4 colourModel; // linear
 #endif
+layout(location = 13) in float drawObject;       // the number of the thing that it is part of, from 1
 layout(location = 12) in vec3 lastPositionModel; // of the frame before, where a skin or morph targets move it
 
 Affine affine(vec4 rows[3]) { return Affine(rows[0], rows[1], rows[2]); }

@@ -14,6 +14,9 @@ out float z; // where it is linear in the position, interpolation keeps it exact
 #ifdef SIGN_MOVERS
 flat out float side; // −1 for what has moved since the last frame
 #endif
+#ifdef OBJECTS
+flat out float castingObject;
+#endif
 #ifdef MASKED
 out vec2 uv;
 flat out float leastAlpha;
@@ -41,6 +44,9 @@ void main()
     for (int row = 0; row < 3; ++row) moved = moved || lastWorldFromModel[row] != worldFromModel[row];
     side = moved ? -1.0 : 1.0;
 #endif
+#ifdef OBJECTS
+    castingObject = drawObject;
+#endif
 #ifdef MASKED
     uv = uvModel;
     leastAlpha = drawBaseColour.w;
@@ -60,6 +66,10 @@ layout(location = 0) out float depth;
 #endif
 #ifdef SIGN_MOVERS
 flat in float side;
+#endif
+#ifdef OBJECTS
+flat in float castingObject;
+layout(location = OBJECTS) out float object;
 #endif
 #if defined(RADIAL)
 in vec3 fromLight;
@@ -97,6 +107,9 @@ void main()
 #endif
 #if defined(RADIAL) || defined(LINEAR_DEPTH) || defined(RADIAL_OF_VERTICES)
     gl_FragDepth = stored;
+#endif
+#ifdef OBJECTS
+    object = castingObject;
 #endif
 #ifdef SIGN_MOVERS
     depth = side * max(stored, 1e-6); // zero has no sign

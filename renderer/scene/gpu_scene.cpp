@@ -41,9 +41,9 @@ glm::mat3x4 affineRows(const glm::mat4& matrix) { return glm::mat3x4(glm::transp
 
 void destroyFramebuffer(GLuint name) { glDeleteFramebuffers(1, &name); }
 
-// Each level from the one above it, by a bilinear filter in linear light. glGenerateTextureMipmap does the same, but Mesa
-// locks what contexts share until it is done, the compilation of its shaders included, and a window that draws beside a
-// loading scene stands still so long.
+// Each level from the one above it, by a bilinear filter in linear light. glGenerateTextureMipmap does the same, but
+// Mesa locks what contexts share until it is done, the compilation of its shaders included, and a window that draws
+// beside a loading scene stands still so long.
 void makeMipmaps(GLuint texture, int width, int height, int levels) {
     GLuint names[2];
     glCreateFramebuffers(2, names);
@@ -194,6 +194,7 @@ void GpuScene::planDraws(const SceneState& state) {
     });
 
     std::vector<Command> commands;
+    std::vector<float> objects; // a node each; the ground is one, too
     for (size_t i = 0; i < order.size(); ++i) {
         const Keyed& keyed = order[i];
         const bool newBatch = i == 0 || key(order[i - 1].batch) != key(keyed.batch);
@@ -222,6 +223,8 @@ void GpuScene::planDraws(const SceneState& state) {
             data.emissive_unlit = glm::vec4(material.emissive, material.unlit ? 1 : 0);
         }
         draws_.push_back(data);
+        objects.push_back(1 + static_cast<float>(keyed.drawable == ground ? scene.nodes.size()
+                                                                          : state.drawables()[keyed.drawable].node));
         drawableOfDraw_.push_back(keyed.drawable);
         if (newBatch) {
             batches_.push_back(keyed.batch);
@@ -232,12 +235,13 @@ void GpuScene::planDraws(const SceneState& state) {
     commandCount_ = static_cast<uint32_t>(commands.size());
     commands_ = Buffer("draw commands", commands.size() * sizeof(Command), commands.data(), GL_DYNAMIC_STORAGE_BIT);
     drawBuffer_ = Buffer("draws", draws_.size() * sizeof(DrawData), draws_.data(), GL_DYNAMIC_STORAGE_BIT);
+    objects_ = Buffer("objects", objects.size() * sizeof(float), objects.data());
 }
 
 namespace {
 // The bindings of vertex buffers; locations 3 to 10 are instanced.
 constexpr GLuint positionBinding = 0, normalBinding = 1, uvBinding = 2, instancedBinding = 3, colourBinding = 11,
-                 lastPositionBinding = 12;
+                 lastPositionBinding = 12, objectBinding = 13;
 } // namespace
 
 void GpuScene::makeVertexArray() const {
@@ -265,6 +269,8 @@ void GpuScene::makeVertexArray() const {
         glVertexArrayAttribBinding(vao, instancedBinding + i, instancedBinding);
         glEnableVertexArrayAttrib(vao, instancedBinding + i);
     }
+    attribute(objectBinding, objects_, 1, GL_FLOAT, sizeof(float));
+    glVertexArrayBindingDivisor(vao, objectBinding, 1);
     glVertexArrayElementBuffer(vao, indices_.name());
 }
 

@@ -67,7 +67,7 @@ private:
     std::vector<Batch> batches_;
     std::vector<DrawData> draws_;
     uint32_t commandCount_ = 0, groundCommand_ = 0, groundVertices_ = 0;
-    Buffer positions_, lastPositions_, normals_, uvs_, colours_, indices_, commands_, drawBuffer_;
+    Buffer positions_, lastPositions_, normals_, uvs_, colours_, indices_, commands_, drawBuffer_, objects_;
     Buffer influences_, deltas_, jobBuffer_, joints_, weights_; // of what is posed
     std::vector<glm::mat3x4> jointRows_;                        // as sent
     std::vector<TextureHandle> textures_;                       // as Scene::textures, then a white one

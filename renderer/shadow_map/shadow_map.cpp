@@ -214,6 +214,11 @@ ShadowMap drawShadowMap(Flow& flow, Scope scope, const Inputs& inputs, const Sha
     } else {
         pass.writes.push_back({name, Format::Depth32F, extent, channels});
     }
+    if (description.objects) {
+        ensure(layer == 0, "only the nearest surfaces are told apart");
+        draw.defines.push_back({"OBJECTS", description.format != Format::Depth32F ? 1 : 0}); // its colour image
+        pass.writes.push_back({"shadow-map-objects", Format::R32F, extent, objectChannels});
+    }
     if (layer > 0) {
         ShadowMapDescription nearer = description;
         --nearer.layer;
@@ -221,7 +226,10 @@ ShadowMap drawShadowMap(Flow& flow, Scope scope, const Inputs& inputs, const Sha
         pass.reads.push_back({"nearer", drawShadowMap(flow, scope, inputs, nearer).depth});
     }
     pass.work = draw;
-    return {flow.pass(scope, pass)[0], view};
+    const Flow::Outputs images = flow.pass(scope, pass);
+    ShadowMap map{images[0], view, {}};
+    if (description.objects) map.objects = images[images.indices.size() - 1];
+    return map;
 }
 
 ViewBlock viewBlock(const View& view) {

@@ -30,6 +30,7 @@ struct ShadowMapDescription {
     // reference plane, and the mean of many keeps the rounding of each.
     glm::vec2 shift{0, 0};
     int border = 1; // texels along the edge that stay empty: a lookup outside is clamped to them and finds no caster
+    bool objects = false;    // an image of the numbers of the things that cast, too
     bool signMovers = false; // depth is negative where a caster's pose differs from the last frame's; needs R32F
 };
 inline constexpr int mostLayers = 8;
@@ -138,7 +139,9 @@ LightViewBlock lightView(const Inputs& inputs, const ShadowMapDescription& descr
 struct ShadowMap {
     Image depth;
     LightViewBlock view;
+    std::optional<Image> objects;
 };
+inline constexpr Channel objectChannels[] = {{"object", "", "number of the thing that is seen, from 1"}};
 ShadowMap drawShadowMap(Flow& flow, Scope scope, const Inputs& inputs, const ShadowMapDescription& description);
 
 // The front of the constants of every pass that includes shaders/resolve.glsl.

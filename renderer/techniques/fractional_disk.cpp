@@ -136,6 +136,14 @@ struct Parameters : ParameterSet {
                   .source = "Valient, de Boer, figures 3 and 4",
                   .help = "Leaves out samples whose own disk does not hold the receiver: thin things then throw no "
                           "shadow on themselves."}};
+    Flag objectIds{*this,
+                   {.id = "object-ids",
+                    .label = "Object numbers",
+                    .value = 0,
+                    .programConstant = true,
+                    .source = "Brabec, Seidel 2002; Valient, de Boer, Stochastic sampled PCF",
+                    .help = "Things throw no shadow on themselves at all. Takes false shadows off slanting receivers, "
+                            "and the true ones as well; draws everything once more."}};
     Choice<Listing> listing{
         *this,
         {.id = "listing",
@@ -317,8 +325,10 @@ public:
     ParameterSet& parameters() override { return parameters_; }
     std::optional<TextureReads> readsPerPixel() const override {
         const bool prepared = prepares(parameters_), searches = parameters_.preparation == Preparation::NoneCorrected;
-        const int sample = parameters_.noise == Noise::Constants ? 1 : 2;
-        const int most = sample * parameters_.maxSamples, start = parameters_.noise == Noise::RandomStart ? 1 : 0;
+        const int texel = parameters_.objectIds ? 2 : 1; // of the map
+        const int sample = texel + (parameters_.noise == Noise::Constants ? 0 : 1);
+        const int most = sample * parameters_.maxSamples;
+        const int start = texel - 1 + (parameters_.noise == Noise::RandomStart ? 1 : 0);
         if (searches) return TextureReads{1 + start + most, 1 + start + 2 * most};
         return TextureReads{1 + start + (prepared ? 0 : sample), 1 + start + most};
     }
@@ -363,6 +373,10 @@ private:
         if (map.view.range.w != 0) resolver.defines.push_back({"RADIAL_METRIC"});
         PassReads reads = {{"shadowMap", map.depth}};
         if (past) reads.push_back({"history", *past});
+        if (map.objects) {
+            reads.push_back({"casting", *map.objects});
+            reads.push_back({"receiving", drawObjects(flow, scope, inputs)});
+        }
         if (prepared) reads.push_back({"prepared", prepare(flow, scope, map)});
         if (parameters_.noise == Noise::Constants) {
             static const std::array<vec2, pointsInSet> sets[] = {lightPoints(false, 0), lightPoints(true, 0)};
@@ -420,10 +434,27 @@ private:
     ShadowMapDescription describeMap(const Inputs& inputs) const {
         static constexpr Metric metrics[] = {Metric::Radial, Metric::RadialOfVertices, Metric::Axial};
         ShadowMapDescription description = parameters_.map.describe();
+        description.objects = parameters_.objectIds;
         if (inputs.light.shape == LightShape::Directional) return description;
         description.metric = metrics[static_cast<int>(Distance(parameters_.distance))];
         description.range = {float(parameters_.attenuationStart), float(parameters_.attenuationEnd)};
         return description;
+    }
+
+    // Which thing each pixel of the geometry buffer shows.
+    static Image drawObjects(Flow& flow, Scope scope, const Inputs& inputs) {
+        static constexpr Channel zChannels[] = {{"z", "", "the rasteriser's own depth; 1: near plane, 0: far plane"}};
+        const Extent extent{inputs.view.size.x, inputs.view.size.y};
+        return flow.pass(scope, {.stage = Stage::Scene,
+                                 .name = "objects",
+                                 .work = Draw{.shader = "objects.glsl",
+                                              .geometry = inputs.geometry,
+                                              .poseVersion = inputs.poseVersion,
+                                              .faces = Faces::AsMaterial,
+                                              .reversedDepth = true},
+                                 .writes = {{"objects", Format::R32F, extent, objectChannels},
+                                            {"objects-z", Format::Depth32F, extent, zChannels}},
+                                 .constants = viewBlock(inputs.view)})[0];
     }
 
     // The map with what its texels know of their surroundings.

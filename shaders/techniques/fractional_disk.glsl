@@ -17,6 +17,10 @@ uniform sampler2D prepared; // depth, depth of the nearest occluder, inverse dis
 #if NOISE != NOISE_CONSTANTS
 uniform sampler2D noise; // rows of points in the disk of the light's shape, from [−1, 1] to [0, 1]; two random numbers
 #endif
+#if OBJECT_IDS
+uniform sampler2D casting;   // the number of the thing in each texel of the map
+uniform sampler2D receiving; // and in each of the geometry buffer
+#endif
 #ifdef KEEPS_SAMPLES
 uniform writeonly image2D samples; // hidden ones, all, eye depth [m], depth of the occluder [m]
 #endif
@@ -85,6 +89,7 @@ struct Disk {
     vec2 halfLight;      // r [m, or tangent]
     vec2 fromSample;     // the receiver's place on the reference plane, from the light's point, over its depth
     float slopePerTexel; // what that grows by from texel to texel
+    float object;        // its number
 };
 
 Disk makeDisk(Receiver r, Lookup l)
@@ -98,6 +103,11 @@ Disk makeDisk(Receiver r, Lookup l)
     disk.halfLight = lightScale * lightView.light.xy;
     disk.fromSample = (r.reference - lightView.sample_reference.xy) / f;
     disk.slopePerTexel = 1.0 / (texelsOfReference * f);
+#if OBJECT_IDS
+    disk.object = texelFetch(receiving, surfaceTexel(r.pixel), 0).x;
+#else
+    disk.object = 0.0;
+#endif
     return disk;
 }
 
@@ -122,6 +132,16 @@ vec2 diskTexelsHalf(Disk disk, float occluder, float most)
     return longest > most ? q * (most / longest) : q;
 }
 
+// Whether the texel may hide the receiver: not if it is of the same thing, where things are told apart.
+bool ofAnother(Disk disk, vec2 corner)
+{
+#if OBJECT_IDS
+    return textureLod(casting, (corner + 0.5) * lightView.light.w, 0.0).x != disk.object;
+#else
+    return true;
+#endif
+}
+
 // The axial depth of what hides the receiver's disk from the light `offset` texels beside it; at least the receiver's
 // own: nothing does.
 float occluderAt(Disk disk, vec2 texel, vec2 offset)
@@ -129,7 +149,7 @@ float occluderAt(Disk disk, vec2 texel, vec2 offset)
     vec2 corner = floor(texel + offset);
     float z = storedDepth(corner);
     float d = occluderDepth(disk, z, corner + 0.5 - texel);
-    bool occludes = z < 1.0 && d + disk.bias < disk.depth;
+    bool occludes = z < 1.0 && d + disk.bias < disk.depth && ofAnother(disk, corner);
 #if TWO_STEP
     occludes = occludes && withinOwnDisk(offset, disk.halfLight, distanceToLight(d), disk.depth - d, disk.texelsPerMetre, roundLight);
 #endif
@@ -156,6 +176,7 @@ void main()
 #else
     bool hard = own.x < 1.0 && blocks(l, own.x, vec2(0.0)) > 0.0;
 #endif
+    hard = hard && ofAnother(disk, corner);
     ivec2 start = firstSample(r.pixel);
 
     // The disk's half size, from the receiver's own occluder or, where it is lit, from the nearest.
@@ -163,8 +184,8 @@ void main()
     float sized = occluderDepth(disk, occluder, corner + 0.5 - l.texel);
     vec2 q = diskTexelsHalf(disk, sized, radius);
 #if PREPARED
-    // The boundary is known to a texel.
-    bool nearby = nearBoundary(own.z, radius, max(q.x, q.y) + 1.0);
+    // A disk of less than a texel is the texel's own answer.
+    bool nearby = nearBoundary(own.z, radius, max(q.x, q.y)) && max(q.x, q.y) >= 0.5;
     if (slipEarlyOut) nearby = nearBoundaryAsPrinted(own.z, max(q.x, q.y));
     bool filters = asks && occluder < 1.0 && nearby;
 #else

@@ -284,13 +284,20 @@ TEST_CASE("the same frame twice is the same to the last bit") {
 
 TEST_CASE("a parameter says that it is without effect exactly when no value of it changes the picture") {
     // The sheet is open, so that it matters which faces cast. The low plate is for biases of those that turn away.
-    const auto scene = SceneBuilder()
-                           .floor(3)
-                           .box({-1, 0, -1}, {0, 1, 0})
-                           .box({0.2f, 0.8f, 0.2f}, {0.9f, 1.0f, 1.4f})
-                           .box({0.3f, 0.02f, -1.3f}, {1.2f, 0.06f, -0.4f})
-                           .quad({-1, 0.5f, 0.5f}, {-1, 0.5f, 1.5f}, {0, 0.5f, 1.5f}, {0, 0.5f, 0.5f})
-                           .build();
+    const auto scene =
+        std::make_shared<Scene>(*SceneBuilder()
+                                     .floor(3)
+                                     .box({-1, 0, -1}, {0, 1, 0})
+                                     .box({0.2f, 0.8f, 0.2f}, {0.9f, 1.0f, 1.4f})
+                                     .box({0.3f, 0.02f, -1.3f}, {1.2f, 0.06f, -0.4f})
+                                     .quad({-1, 0.5f, 0.5f}, {-1, 0.5f, 1.5f}, {0, 0.5f, 1.5f}, {0, 0.5f, 0.5f})
+                                     .build());
+    // The floor and the first box are one thing, which throws a shadow on itself.
+    for (size_t i = 1; i < 14; ++i) {
+        std::vector<Primitive>& triangle = scene->meshes[i].primitives;
+        scene->meshes[0].primitives.insert(scene->meshes[0].primitives.end(), triangle.begin(), triangle.end());
+        triangle.clear();
+    }
     for (const Card* card : catalogue()) {
         Session s = quickSession(scene, card->id);
         s.light.position = {1.5f, 3, 1}; // slanting, so that biases matter

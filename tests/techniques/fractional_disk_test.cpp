@@ -238,6 +238,29 @@ TEST_CASE("the two-step test takes a thin slab's shadow off itself") {
     CHECK(with < 0.2 * without);
 }
 
+TEST_CASE("with object numbers a thing throws no shadow on itself, and the same shadow as before on others") {
+    SceneBuilder arch; // one thing: a plate on two legs, over its own base
+    arch.box({-1, 0, -1}, {1, 0.1f, 1}).box({-0.6f, 1, -0.6f}, {0.6f, 1.1f, 0.6f});
+    Bench one(arch.merged()), several(arch.build());
+    for (Bench* b : {&one, &several}) b->set("map-size", "256"), b->set("faces", "both");
+    const auto onTop = [](Bench& b, const char* numbers) {
+        b.set("object-ids", numbers);
+        const ShadowImage image = draw(b.s);
+        double sum = 0;
+        for (int y = 0; y < image.psi.height; ++y)
+            for (int x = 0; x < image.psi.width; ++x) {
+                const glm::vec3 p = image.positionWorld(x, y);
+                const bool inside = std::abs(p.x) < 0.95f && std::abs(p.z) < 0.95f; // of the base's top
+                if (image.surface(x, y) && inside && std::abs(p.y - 0.1f) < 1e-3f) sum += image.at(x, y);
+            }
+        return sum;
+    };
+    CHECK(onTop(one, "off") > 50);
+    CHECK(onTop(one, "on") == 0);
+    CHECK(onTop(several, "on") == Approx(onTop(several, "off")).epsilon(0.02));
+    CHECK(driverMessages().empty());
+}
+
 TEST_CASE("noise falls with the number of samples, as 1/√n or faster") {
     Bench b = halfPlane();
     b.set("map-size", "512");
