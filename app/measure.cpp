@@ -75,6 +75,18 @@ std::vector<Setting> combinations(const Options& options) {
     return chosen;
 }
 
+std::optional<Motion> motionOf(const Options& options) {
+    if (!options.motion) return std::nullopt;
+    if (options.path || options.play)
+        throw InputError(fmt::format("--motion and {}: one of them was expected", options.path ? "--path" : "--play"));
+    const std::span<const std::string_view> names = motionNames();
+    const auto found = std::find(names.begin(), names.end(), *options.motion);
+    if (found == names.end())
+        throw InputError(fmt::format("--motion: '{}' is not one of {}{}", *options.motion, fmt::join(names, ", "),
+                                     suggestion(*options.motion, names)));
+    return static_cast<Motion>(found - names.begin());
+}
+
 MeasurementPlan makePlan(const Options& options, const Session& session) {
     MeasurementPlan plan;
     if (options.path) {
@@ -93,8 +105,12 @@ MeasurementPlan makePlan(const Options& options, const Session& session) {
             }
         }
     }
-    plan.moves = plan.path || session.timeStep != 0;
-    plan.frames = options.frames.value_or(plan.path ? plan.path->frames() : defaultFrames);
+    plan.motion = motionOf(options);
+    plan.moves = plan.path || plan.motion || session.timeStep != 0;
+    plan.frames = options.frames.value_or(plan.path ? plan.path->frames() : plan.motion ? motionFrames : defaultFrames);
+    if (plan.motion && plan.frames <= motionEvent)
+        throw InputError(
+            fmt::format("--frames: more than {} were expected with --motion, which begins then", motionEvent));
     if (plan.path && plan.frames > plan.path->frames())
         throw InputError(
             fmt::format("--frames: {} is more than the {} frames of the path", plan.frames, plan.path->frames()));
@@ -161,7 +177,7 @@ Json parametersJson(const Setting& setting) {
     return json;
 }
 
-Json resultJson(const SettingResult& result, const Json& truth) {
+Json resultJson(const SettingResult& result, const Json& truth, bool motion) {
     Json json = {{"row", result.setting.place},
                  {"technique", result.setting.card->id},
                  {"parameters", parametersJson(result.setting)},
@@ -188,6 +204,13 @@ Json resultJson(const SettingResult& result, const Json& truth) {
     json["error"] = errorJson(result, truth);
     json["frames"] = framesJson(result);
     json["front"] = false;
+    if (motion && result.frames.size() > motionEvent) {
+        std::vector<double> since;
+        for (size_t i = motionEvent; i < result.frames.size(); ++i)
+            since.push_back(result.frames[i].errors->penumbra.rmse);
+        const Ghost ghost = ghostOf(since);
+        json["ghost"] = {{"peak", ghost.peak}, {"settled", ghost.settled}, {"half_life", ghost.halfLife}};
+    }
     if (!result.trouble.empty()) json["trouble"] = result.trouble;
     return json;
 }
@@ -234,6 +257,7 @@ uint64_t viewHash(const Session& session, const MeasurementPlan& plan) {
     hash.add(session.timeStep);
     hash.add(session.seed);
     addVector(session.size);
+    if (plan.motion) hash.add(*plan.motion);
     if (plan.path)
         for (int frame = 0; frame < plan.frames; ++frame) addCamera(plan.path->at(frame));
     return hash.value();
@@ -244,6 +268,7 @@ Json viewJson(const Options& options, const Session& session, const MeasurementP
     Json view = {{"name", options.view ? Json(*options.view) : Json()}};
     for (const char* fact : {"camera", "light", "ground", "time", "time-step", "seed"}) view[fact] = facts.at(fact);
     view["path"] = options.path ? Json(*options.path) : Json();
+    view["motion"] = options.motion ? Json(*options.motion) : Json();
     view["hash"] = fmt::format("{:016x}", viewHash(session, plan));
     return view;
 }
@@ -297,7 +322,8 @@ void addResults(Json& document, const Options& options, const Measurement& measu
                         {"map_bias", measurement.mapBias ? Json(*measurement.mapBias) : Json()}};
     document["complete"] = measurement.complete;
     document["results"] = Json::array();
-    for (const SettingResult& result : measurement.results) document["results"].push_back(resultJson(result, truth));
+    for (const SettingResult& result : measurement.results)
+        document["results"].push_back(resultJson(result, truth, options.motion.has_value()));
 }
 
 int finish(const HeadlessContext& context, const Measurement& measurement, size_t rows) {
@@ -320,9 +346,10 @@ std::optional<Budget> budgetOf(const Options& options) {
         throw InputError("--budget-ms and --budget-rmse: one of them was expected");
     if (!options.free) throw InputError(fmt::format("{}: --free NAME,... was expected with it", name));
     const std::pair<const char*, bool> strangers[] = {
-        {"--sweep", !options.sweeps.empty()}, {"--path", options.path.has_value()},
-        {"--shard", options.shard.has_value()}, {"--merge", !options.merged.empty()},
-        {"--frames", options.frames.has_value()}, {"--repeat", options.repeat.has_value()}, {"--play", options.play}};
+        {"--sweep", !options.sweeps.empty()},     {"--path", options.path.has_value()},
+        {"--motion", options.motion.has_value()}, {"--shard", options.shard.has_value()},
+        {"--merge", !options.merged.empty()},     {"--frames", options.frames.has_value()},
+        {"--repeat", options.repeat.has_value()}, {"--play", options.play}};
     for (const auto& [stranger, given] : strangers)
         if (given) throw InputError(fmt::format("{} and {}: one of them was expected", name, stranger));
     const std::string& text = options.budgetMs ? *options.budgetMs : *options.budgetRmse;

@@ -102,12 +102,14 @@ std::string heading(const Json& document) {
     std::string text = fmt::format("{} {}x{}", plain(document["scene"]), plain(at(document, "/size/0")),
                                    plain(at(document, "/size/1")));
     if (const Json& budget = at(document, "/budget"); budget.is_object())
-        text += fmt::format(", {} settings tried in {} view{}", plain(at(budget, "/tried")), at(budget, "/views").size(),
-                            at(budget, "/views").size() == 1 ? "" : "s");
+        text += fmt::format(", {} settings tried in {} view{}", plain(at(budget, "/tried")),
+                            at(budget, "/views").size(), at(budget, "/views").size() == 1 ? "" : "s");
     else
         text += fmt::format(", {} frames", plain(at(document, "/frames")));
     if (const Json& repeat = at(document, "/repeat"); repeat != 1) text += fmt::format(", {} times", plain(repeat));
     if (const Json& path = at(document, "/view/path"); path.is_string()) text += fmt::format(", along {}", plain(path));
+    if (const Json& motion = at(document, "/view/motion"); motion.is_string())
+        text += fmt::format(", {}", plain(motion));
     const auto known =
         std::find_if(results.begin(), results.end(), [](const Json& result) { return result["error"].is_object(); });
     if (known == results.end()) return text + "\n";
@@ -129,6 +131,19 @@ std::string ties(const Json& results) {
             names += fmt::format("{}{}", names.empty() ? "" : "; ", rowText(result));
     if (names.empty()) return {};
     return fmt::format("No difference in cost from the first row beyond the noise: {}\n", names);
+}
+
+// How long what is no longer there is still seen.
+std::string ghosts(const Json& results) {
+    std::string text;
+    for (const Json& result : results)
+        if (const Json& ghost = at(result, "/ghost"); ghost.is_object())
+            text +=
+                fmt::format("{}: penumbra RMSE at most {:.4f} after the event, {:.4f} in the end, half-life {} frames, "
+                            "flicker {}\n",
+                            rowText(result), numberAt(ghost, "/peak"), numberAt(ghost, "/settled"),
+                            plain(at(ghost, "/half_life")), plain(at(result, "/error/flicker")));
+    return text;
 }
 
 // --- comma-separated values ----------------------------------------------------------------------------------------
@@ -202,9 +217,8 @@ std::string proposalText(const Json& document) {
     const Json& budget = at(document, "/budget");
     if (!budget.is_object()) return {};
     const bool cost = budget["bound"] == "cost";
-    const std::string wanted =
-        cost ? fmt::format("a cost of at most {:g} ms", numberAt(budget, "/limit"))
-             : fmt::format("an RMSE of at most {:g}", numberAt(budget, "/limit"));
+    const std::string wanted = cost ? fmt::format("a cost of at most {:g} ms", numberAt(budget, "/limit"))
+                                    : fmt::format("an RMSE of at most {:g}", numberAt(budget, "/limit"));
     if (!budget["proposal"].is_number_unsigned()) {
         const char* path = cost ? "/cost/median" : "/error/rmse";
         double least = std::numeric_limits<double>::infinity();
@@ -219,7 +233,8 @@ std::string proposalText(const Json& document) {
                                    numberAt(result, "/cost/high"), numberAt(result, "/error/rmse"),
                                    budget["certain"] == false ? "; the noise of its cost reaches above that" : "");
     text += fmt::format(" --technique {}", plain(result["technique"]));
-    for (const auto& [name, value] : result["parameters"].items()) text += fmt::format(" --set {}={}", name, plain(value));
+    for (const auto& [name, value] : result["parameters"].items())
+        text += fmt::format(" --set {}={}", name, plain(value));
     return text + "\n";
 }
 
@@ -240,9 +255,10 @@ std::string measurementTable(const Json& document) {
     }
     return heading(document) + "\n" + aligned(rows, 3) + "\n" +
            "* on the trade-off front: nobody is both faster (cost = map + prefilter + resolve) and closer (RMSE).\n" +
-           "Times are medians in milliseconds; bias is positive where shadows are too dark; reads are texels of shadow maps a "
+           "Times are medians in milliseconds; bias is positive where shadows are too dark; reads are texels of shadow "
+           "maps a "
            "pixel.\n" +
-           ties(document["results"]) + troubles + proposalText(document);
+           ties(document["results"]) + ghosts(document["results"]) + troubles + proposalText(document);
 }
 
 std::string measurementCsv(const Json& document) {
@@ -259,7 +275,8 @@ std::string measurementCsv(const Json& document) {
             continue;
         }
         rows.push_back(head);
-        for (const char* key : {"ms", "cost", "stages", "bytes", "maps", "pass_count", "reads", "error", "front", "proposal", "trouble"})
+        for (const char* key :
+             {"ms", "cost", "stages", "bytes", "maps", "pass_count", "reads", "error", "front", "proposal", "trouble"})
             if (result.contains(key)) flatten(result[key], key, rows.back());
     }
     // Parameters of any row are columns of all.

@@ -62,7 +62,11 @@ public:
         , plan_(std::move(plan))
         , progress_(progress)
         , start_(session_.time)
-        , camera_(session_.camera) {}
+        , camera_(session_.camera) {
+        if (!plan_.motion) return;
+        if (movesCasters(*plan_.motion)) session_.timeStep = motionStep;
+        rest_ = {session_.camera, session_.light, session_.time};
+    }
 
     Measurement measure(std::vector<Setting> settings, int frames, Share share) {
         plan_.frames = frames;
@@ -103,6 +107,7 @@ private:
 
     void place(int frame) {
         session_.frame = static_cast<uint32_t>(frame);
+        if (plan_.motion) return penumbra::place(*plan_.motion, rest_, frame, session_);
         session_.time = start_ + frame * session_.timeStep;
         session_.camera = plan_.path ? plan_.path->at(frame) : camera_;
     }
@@ -138,9 +143,8 @@ private:
             static_cast<int>(std::count_if(flow.passes().begin(), flow.passes().end(), [](const Flow::PassNode& pass) {
                 return pass.stage == Stage::ShadowMap && std::holds_alternative<Draw>(pass.work);
             }));
-        lane.result.costPasses =
-            static_cast<int>(std::count_if(flow.passes().begin(), flow.passes().end(),
-                                           [](const Flow::PassNode& pass) { return isCost(pass.stage); }));
+        lane.result.costPasses = static_cast<int>(std::count_if(
+            flow.passes().begin(), flow.passes().end(), [](const Flow::PassNode& pass) { return isCost(pass.stage); }));
         return lane;
     }
 
@@ -179,7 +183,8 @@ private:
                 result.errors = errorsOf(lane.shadow, *truth_);
                 result.standardError = truth_->meanPenumbraStandardError;
             }
-            if (frame >= firstChange && !plan_.path && !lane.shadowBefore.empty()) {
+            if (frame >= firstChange && !plan_.path && plan_.motion != Motion::CameraPan &&
+                !lane.shadowBefore.empty()) {
                 const Truth& truth = *truth_;
                 const Truth& before = truthBefore_ ? *truthBefore_ : truth;
                 lane.flickers.push_back(flicker({lane.shadowBefore, &before}, {lane.shadow, &truth}));
@@ -223,7 +228,9 @@ private:
         if (!plan_.moves) return;
         if (result.frames.size() <= session_.frame) result.frames.resize(session_.frame + 1);
         FrameResult& frame = result.frames[session_.frame];
-        frame.seconds = plan_.path ? session_.frame * CameraPath::step : session_.time;
+        frame.seconds = plan_.path     ? session_.frame * CameraPath::step
+                        : plan_.motion ? session_.frame * motionStep
+                                       : session_.time;
         frame.milliseconds.push_back(whole);
         frame.costs.push_back(cost);
     }
@@ -306,6 +313,7 @@ private:
     Progress& progress_;
     const double start_;
     const Camera camera_;
+    Rest rest_; // before a motion
     Measurement measurement_;
     std::unique_ptr<Renderer> first_; // one that others are siblings of, when its lane is done
     std::vector<Lane> lanes_;
@@ -345,9 +353,7 @@ Measurer::Measurer(Session session, MeasurementPlan plan, Progress& progress)
 Measurer::~Measurer() = default;
 Measurer::Measurer(Measurer&&) noexcept = default;
 
-Measurement Measurer::measure(std::vector<Setting> settings) {
-    return measure(std::move(settings), frames_, {});
-}
+Measurement Measurer::measure(std::vector<Setting> settings) { return measure(std::move(settings), frames_, {}); }
 
 Measurement Measurer::measure(std::vector<Setting> settings, int frames, Share share) {
     return work_->measure(std::move(settings), frames, share);

@@ -9,6 +9,7 @@
 #include "renderer/measure/camera_path.h"
 #include "renderer/measure/combinations.h"
 #include "renderer/measure/errors.h"
+#include "renderer/measure/motion.h"
 #include "renderer/measure/statistics.h"
 #include "renderer/renderer.h"
 
@@ -29,6 +30,7 @@ struct MeasurementPlan {
     int repeats = 1;    // of all frames, each from an empty history
     bool moves = false; // every frame is compared with a truth of its own; else the last one with that of the view
     std::optional<CameraPath> path; // of the camera; it moves, then
+    std::optional<Motion> motion;   // what happens; it moves, then
     TruthOfView truth;
     int biasMaps = 0; // if there are, and the view is still, that many shadow maps are compared with the truth
 };
