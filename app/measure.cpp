@@ -75,7 +75,7 @@ std::vector<Setting> combinations(const Options& options) {
     return chosen;
 }
 
-std::optional<Motion> motionOf(const Options& options) {
+std::optional<MotionEvent> motionOf(const Options& options) {
     if (!options.motion) return std::nullopt;
     if (options.path || options.play)
         throw InputError(fmt::format("--motion and {}: one of them was expected", options.path ? "--path" : "--play"));
@@ -84,7 +84,7 @@ std::optional<Motion> motionOf(const Options& options) {
     if (found == names.end())
         throw InputError(fmt::format("--motion: '{}' is not one of {}{}", *options.motion, fmt::join(names, ", "),
                                      suggestion(*options.motion, names)));
-    return static_cast<Motion>(found - names.begin());
+    return static_cast<MotionEvent>(found - names.begin());
 }
 
 MeasurementPlan makePlan(const Options& options, const Session& session) {
@@ -108,9 +108,9 @@ MeasurementPlan makePlan(const Options& options, const Session& session) {
     plan.motion = motionOf(options);
     plan.moves = plan.path || plan.motion || session.timeStep != 0;
     plan.frames = options.frames.value_or(plan.path ? plan.path->frames() : plan.motion ? motionFrames : defaultFrames);
-    if (plan.motion && plan.frames <= motionEvent)
+    if (plan.motion && plan.frames <= eventFrame)
         throw InputError(
-            fmt::format("--frames: more than {} were expected with --motion, which begins then", motionEvent));
+            fmt::format("--frames: more than {} were expected with --motion, which begins then", eventFrame));
     if (plan.path && plan.frames > plan.path->frames())
         throw InputError(
             fmt::format("--frames: {} is more than the {} frames of the path", plan.frames, plan.path->frames()));
@@ -204,9 +204,9 @@ Json resultJson(const SettingResult& result, const Json& truth, bool motion) {
     json["error"] = errorJson(result, truth);
     json["frames"] = framesJson(result);
     json["front"] = false;
-    if (motion && result.frames.size() > motionEvent) {
+    if (motion && result.frames.size() > eventFrame) {
         std::vector<double> since;
-        for (size_t i = motionEvent; i < result.frames.size(); ++i)
+        for (size_t i = eventFrame; i < result.frames.size(); ++i)
             since.push_back(result.frames[i].errors->penumbra.rmse);
         const Ghost ghost = ghostOf(since);
         json["ghost"] = {{"peak", ghost.peak}, {"settled", ghost.settled}, {"half_life", ghost.halfLife}};

@@ -137,12 +137,15 @@ std::string ties(const Json& results) {
 std::string ghosts(const Json& results) {
     std::string text;
     for (const Json& result : results)
-        if (const Json& ghost = at(result, "/ghost"); ghost.is_object())
-            text +=
-                fmt::format("{}: penumbra RMSE at most {:.4f} after the event, {:.4f} in the end, half-life {} frames, "
-                            "flicker {}\n",
-                            rowText(result), numberAt(ghost, "/peak"), numberAt(ghost, "/settled"),
-                            plain(at(ghost, "/half_life")), plain(at(result, "/error/flicker")));
+        if (const Json& ghost = at(result, "/ghost"); ghost.is_object()) {
+            text += fmt::format(
+                "{}: penumbra RMSE at most {:.4f} after the event, {:.4f} in the end; frames to half of "
+                "the way: {}",
+                rowText(result), numberAt(ghost, "/peak"), numberAt(ghost, "/settled"), plain(at(ghost, "/half_life")));
+            if (const Json& flicker = at(result, "/error/flicker"); flicker.is_number())
+                text += fmt::format("; flicker {:.4f}", flicker.get<double>());
+            text += "\n";
+        }
     return text;
 }
 

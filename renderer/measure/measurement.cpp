@@ -183,7 +183,7 @@ private:
                 result.errors = errorsOf(lane.shadow, *truth_);
                 result.standardError = truth_->meanPenumbraStandardError;
             }
-            if (frame >= firstChange && !plan_.path && plan_.motion != Motion::CameraPan &&
+            if (frame >= firstChange && !plan_.path && plan_.motion != MotionEvent::CameraPan &&
                 !lane.shadowBefore.empty()) {
                 const Truth& truth = *truth_;
                 const Truth& before = truthBefore_ ? *truthBefore_ : truth;

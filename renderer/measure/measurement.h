@@ -29,8 +29,8 @@ struct MeasurementPlan {
     int frames = 20;    // measured, after a warm-up that leaves no trace in any history
     int repeats = 1;    // of all frames, each from an empty history
     bool moves = false; // every frame is compared with a truth of its own; else the last one with that of the view
-    std::optional<CameraPath> path; // of the camera; it moves, then
-    std::optional<Motion> motion;   // what happens; it moves, then
+    std::optional<CameraPath> path;    // of the camera; it moves, then
+    std::optional<MotionEvent> motion; // what happens; it moves, then
     TruthOfView truth;
     int biasMaps = 0; // if there are, and the view is still, that many shadow maps are compared with the truth
 };

@@ -28,24 +28,24 @@ std::span<const std::string_view> motionNames() {
     return names;
 }
 
-void place(Motion motion, const Rest& start, int frame, Session& session) {
-    const int since = std::max(frame - motionEvent + 1, 0);
+void place(MotionEvent motion, const Rest& start, int frame, Session& session) {
+    const int since = std::max(frame - eventFrame + 1, 0);
     session.camera = start.camera;
     session.light = start.light;
     session.time = start.time;
     Camera& camera = session.camera;
     switch (motion) {
-    case Motion::CameraPan: { // a pixel of the picture's middle a frame
+    case MotionEvent::CameraPan: { // a pixel of the picture's middle a frame
         const float pixel = 2 * std::tan(glm::radians(0.5f * camera.fovY)) / float(session.size.y);
         camera.target = camera.eye + turned(camera.target - camera.eye, float(since) * std::atan(pixel));
         break;
     }
-    case Motion::CameraJump:
+    case MotionEvent::CameraJump:
         if (since > 0) camera.eye = camera.target + turned(camera.eye - camera.target, glm::radians(jumpDegrees));
         break;
-    case Motion::CasterMoves: session.time += since * motionStep; break;
-    case Motion::CasterStops: session.time += std::min(frame, motionEvent - 1) * motionStep; break;
-    case Motion::LightMoves: {
+    case MotionEvent::CasterMoves: session.time += since * motionStep; break;
+    case MotionEvent::CasterStops: session.time += std::min(frame, eventFrame - 1) * motionStep; break;
+    case MotionEvent::LightMoves: {
         const glm::vec3 gaze = session.light.target - session.light.position;
         glm::vec3 aside = glm::cross(gaze, glm::vec3(0, 1, 0));
         if (glm::length(aside) <= 1e-6f * glm::length(gaze)) aside = glm::vec3(1, 0, 0);
@@ -53,7 +53,9 @@ void place(Motion motion, const Rest& start, int frame, Session& session) {
         session.light.position += glm::normalize(aside) * distance;
         break;
     }
-    case Motion::LightGrows: session.light.size *= std::pow(lightGrowth, float(std::min(since, lightFrames))); break;
+    case MotionEvent::LightGrows:
+        session.light.size *= std::pow(lightGrowth, float(std::min(since, lightFrames)));
+        break;
     }
 }
 
@@ -62,6 +64,7 @@ Ghost ghostOf(std::span<const double> errors) {
     const size_t quarter = std::max<size_t>(errors.size() / 4, 1);
     const auto peak = std::max_element(errors.begin(), errors.end());
     Ghost ghost{*peak, std::accumulate(errors.end() - std::ptrdiff_t(quarter), errors.end(), 0.0) / double(quarter), 0};
+    if (ghost.peak - ghost.settled < 0.05 * ghost.peak) return ghost; // there is nothing to get over
     const double half = 0.5 * (ghost.peak + ghost.settled);
     ghost.halfLife = int(std::find_if(peak, errors.end(), [&](double e) { return e <= half; }) - peak);
     return ghost;

@@ -10,15 +10,17 @@
 
 namespace penumbra {
 
-enum class Motion { CameraPan, CameraJump, CasterMoves, CasterStops, LightMoves, LightGrows };
+enum class MotionEvent { CameraPan, CameraJump, CasterMoves, CasterStops, LightMoves, LightGrows };
 std::span<const std::string_view> motionNames(); // "camera-pan" ...
 
-inline constexpr int motionEvent = 16;         // the first frame that differs
+inline constexpr int eventFrame = 16;          // the first frame that differs
 inline constexpr int motionFrames = 64;        // of a measurement, unless told otherwise
 inline constexpr double motionStep = 1 / 60.0; // [s]
 
 // Whether animated things move in some of the frames.
-constexpr bool movesCasters(Motion motion) { return motion == Motion::CasterMoves || motion == Motion::CasterStops; }
+constexpr bool movesCasters(MotionEvent motion) {
+    return motion == MotionEvent::CasterMoves || motion == MotionEvent::CasterStops;
+}
 
 // What a session looks like before anything happens.
 struct Rest {
@@ -27,13 +29,14 @@ struct Rest {
     double time = 0;
 };
 // Gives `session` the camera, light and time of a frame.
-void place(Motion motion, const Rest& start, int frame, Session& session);
+void place(MotionEvent motion, const Rest& start, int frame, Session& session);
 
 // What errors, one a frame from the event on, say.
 struct Ghost {
     double peak = 0;    // the largest
     double settled = 0; // mean of the last quarter
-    int halfLife = 0;   // frames from the peak until the error is half way from there to `settled`
+    int halfLife =
+        0; // frames from the peak until the error is half way from there to `settled`; 0 if they hardly differ
 };
 Ghost ghostOf(std::span<const double> errors);
 

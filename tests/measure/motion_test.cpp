@@ -11,15 +11,15 @@ using namespace penumbra;
 TEST_CASE("before its event a motion changes nothing but the time that a caster stops at") {
     const Rest start;
     for (size_t i = 0; i < motionNames().size(); ++i) {
-        const auto motion = Motion(i);
+        const auto motion = MotionEvent(i);
         Session s;
-        place(motion, start, motionEvent - 1, s);
+        place(motion, start, eventFrame - 1, s);
         CAPTURE(motionNames()[i]);
         CHECK(s.camera.eye == start.camera.eye);
         CHECK(glm::distance(s.camera.target, start.camera.target) < 1e-6f);
         CHECK(s.light == start.light);
-        CHECK(s.time == Approx(motion == Motion::CasterStops ? (motionEvent - 1) * motionStep : 0.0));
-        place(motion, start, motionEvent, s);
+        CHECK(s.time == Approx(motion == MotionEvent::CasterStops ? (eventFrame - 1) * motionStep : 0.0));
+        place(motion, start, eventFrame, s);
         const bool differs = s.camera.eye != start.camera.eye || s.camera.target != start.camera.target ||
                              !(s.light == start.light) || s.time != start.time;
         CHECK(differs);
@@ -30,27 +30,27 @@ TEST_CASE("a pan turns by a pixel a frame, a jump keeps its distance, a light co
     const Rest start;
     Session s;
     s.size = {320, 240};
-    place(Motion::CameraPan, start, motionEvent + 9, s);
+    place(MotionEvent::CameraPan, start, eventFrame + 9, s);
     const glm::vec3 before = glm::normalize(start.camera.target - start.camera.eye),
                     after = glm::normalize(s.camera.target - s.camera.eye);
     const float level = glm::length(glm::vec2(before.x, before.z));
     const float pixel = 2 * std::tan(glm::radians(0.5f * start.camera.fovY)) / 240;
     CHECK(glm::distance(before, after) == Approx(10 * pixel * level).epsilon(0.01));
 
-    place(Motion::CameraJump, start, motionEvent, s);
+    place(MotionEvent::CameraJump, start, eventFrame, s);
     CHECK(glm::distance(s.camera.eye, s.camera.target) == Approx(glm::distance(start.camera.eye, start.camera.target)));
 
-    place(Motion::LightMoves, start, motionEvent + 20, s);
+    place(MotionEvent::LightMoves, start, eventFrame + 20, s);
     const AreaLight rest = s.light;
-    place(Motion::LightMoves, start, motionEvent + 40, s);
+    place(MotionEvent::LightMoves, start, eventFrame + 40, s);
     CHECK(s.light == rest);
     CHECK(glm::distance(rest.position, start.light.position) ==
           Approx(0.16f * glm::distance(start.light.position, start.light.target)));
 
-    place(Motion::LightGrows, start, motionEvent + 40, s);
+    place(MotionEvent::LightGrows, start, eventFrame + 40, s);
     CHECK(s.light.size.x == Approx(start.light.size.x * std::pow(1.05f, 8.0f)));
-    place(Motion::CasterStops, start, 50, s);
-    CHECK(s.time == Approx((motionEvent - 1) * motionStep));
+    place(MotionEvent::CasterStops, start, 50, s);
+    CHECK(s.time == Approx((eventFrame - 1) * motionStep));
 }
 
 TEST_CASE("a ghost's half-life is counted from the peak to half way down to where it settles") {
@@ -63,4 +63,5 @@ TEST_CASE("a ghost's half-life is counted from the peak to half way down to wher
     CHECK(ghost.halfLife == 3);
     CHECK(ghostOf({}).halfLife == 0);
     CHECK(ghostOf(std::vector<double>(8, 0.02)).halfLife == 0);
+    CHECK(ghostOf(std::vector<double>{0.0201, 0.02, 0.02, 0.02, 0.02, 0.02, 0.02, 0.02}).halfLife == 0);
 }
