@@ -94,10 +94,12 @@ glm::vec2 depthScale(DepthSign sign) { return sign == DepthSign::Signed ? glm::v
 
 } // namespace
 
-double planeBias(const ParameterSet& set) {
+double planeBias(const ParameterSet& set) { return planeBias(set, 0.5); }
+
+double planeBias(const ParameterSet& set, double deviations) {
     const Gaussian gaussian(static_cast<int>(set.at("kernel").value()), set.at("sigma").value());
     constexpr double bilinear = 0.25; // variance at most
-    return 0.5 * std::sqrt(gaussian.variance() + bilinear);
+    return deviations * std::sqrt(gaussian.variance() + bilinear);
 }
 
 bool isHalf(const ParameterSet& set) { return set.at("format").value() == double(FloatFormat::Float16); }

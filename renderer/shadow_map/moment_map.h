@@ -47,6 +47,7 @@ struct KernelParameters : ParameterGroup {
 // depths of a plane that rises by 1 a texel. At their mean such a bound is up to 0.17 on a lit slope, half a deviation
 // before it 0.04 and one deviation before it nothing; contacts leak light in return.
 double planeBias(const ParameterSet& set);
+double planeBias(const ParameterSet& set, double deviations);
 
 enum class MomentFormat { Float32, Float16, Unorm16, Unorm16Optimised };
 inline constexpr std::string_view momentFormatNames[] = {"32f", "16f", "unorm16", "unorm16-optimised"};
@@ -93,6 +94,20 @@ struct FloatFormatChoice : Choice<FloatFormat> {
     static constexpr std::string_view names[] = {"32f", "16f"};
 };
 bool isHalf(const ParameterSet& set);
+
+// Of techniques that bound ψ by a mean and a variance.
+struct LightBleedingReduction : Real {
+    explicit LightBleedingReduction(ParameterSet& set)
+        : Real(set,
+               {.id = "bleeding-reduction",
+                .label = "Light-bleeding reduction",
+                .value = 0,
+                .min = 0,
+                .max = 0.95,
+                .source = "Lauritzen 2007 (GPU Gems 3, chapter 8)",
+                .help = "Visibility up to this counts as none and what is above is stretched. Hides light that leaks "
+                        "where two casters overlap; thins out penumbrae."}) {}
+};
 
 // Of techniques that solve a moment problem of four powers.
 struct MomentBias : Real {

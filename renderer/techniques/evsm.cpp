@@ -69,16 +69,7 @@ struct Parameters : ParameterSet {
                     .help = "Standard deviations below count as this. Hides rounding on lit surfaces; more of it lets "
                             "light through at contacts.",
                     .defaultFrom = [](const ParameterSet& set) { return isHalf(set) ? 2e-3 : 5e-5; }}};
-    Real bleeding{*this,
-                  {.id = "bleeding-reduction",
-                   .label = "Light-bleeding reduction",
-                   .value = 0,
-                   .min = 0,
-                   .max = 0.95,
-                   .source = "Lauritzen 2007 (GPU Gems 3, chapter 8)",
-                   .help =
-                       "Visibility up to this counts as none and what is above is stretched. Hides light that leaks "
-                       "where two casters overlap; thins out penumbrae."}};
+    LightBleedingReduction bleeding{*this};
     BiasParameters bias{*this, {.slope = 0.5, .normalOffset = 0.5}};
 };
 

@@ -4,37 +4,9 @@
 // puts least in front of the fragment is ψ, in closed form (algorithm 3).
 //
 // Two surfaces within a kernel are reconstructed exactly but for the bias; more make shadows too light, never too dark.
-// One bilinear sample a pixel, whatever the kernel. 8 bytes a texel, twice (rows, then columns), and the depth map.
-#include "renderer/shadow_map/moment_map.h"
+#include "renderer/techniques/four_moments.h"
 
 namespace penumbra {
-namespace {
-
-struct Parameters : ParameterSet {
-    ShadowMapParameters map{*this, {.largest = largestMomentMap}};
-    KernelParameters kernel{*this};
-    MomentParameters moments{*this, MomentFormat::Unorm16Optimised, DepthSign::Signed};
-    MomentBias momentBias{*this};
-    BiasParameters bias{*this, {.slope = 0, .normalOffset = 0, .slopeFrom = planeBias}};
-};
-
-class MsmHamburger final : public Technique {
-public:
-    ParameterSet& parameters() override { return parameters_; }
-    std::optional<TextureReads> readsPerPixel() const override { return TextureReads{4, 4}; }
-    Image build(Flow& flow, Scope scope, const Inputs& inputs) const override {
-        const Parameters& p = parameters_;
-        const MomentMap map =
-            drawMomentMap(flow, scope, inputs, describePowers(4, p.map.describe(), p.kernel, p.moments));
-        return resolveMoments(flow, scope, inputs, "techniques/msm_hamburger.glsl", map,
-                              lookupOfPowers(4, p.moments, p.momentBias), p);
-    }
-
-private:
-    Parameters parameters_;
-};
-
-} // namespace
 
 extern const Card msmHamburgerCard;
 const Card msmHamburgerCard{
@@ -52,7 +24,7 @@ const Card msmHamburgerCard{
         "needs; with less bias lit surfaces speckle.",
     .litTolerance = 1e-4,
     .lidTolerance = 1e-3,
-    .make = [] { return std::unique_ptr<Technique>(new MsmHamburger); },
+    .make = [] { return std::unique_ptr<Technique>(new FourMoments("techniques/msm_hamburger.glsl", planeBias)); },
 };
 
 } // namespace penumbra

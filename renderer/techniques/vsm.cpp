@@ -36,16 +36,7 @@ struct Parameters : ParameterSet {
                           .help = "Variances below count as this, in squares of the depth range. Hides rounding on lit "
                                   "surfaces; more of it lets light through at contacts.",
                           .defaultFrom = usualVariance}};
-    Real bleeding{*this,
-                  {.id = "bleeding-reduction",
-                   .label = "Light-bleeding reduction",
-                   .value = 0,
-                   .min = 0,
-                   .max = 0.95,
-                   .source = "Lauritzen 2007 (GPU Gems 3, chapter 8)",
-                   .help =
-                       "Visibility up to this counts as none and what is above is stretched. Hides light that leaks "
-                       "where two casters overlap; thins out penumbrae."}};
+    LightBleedingReduction bleeding{*this};
     BiasParameters bias{*this, {.slope = 0.5, .normalOffset = 0.5}};
 };
 
