@@ -349,8 +349,9 @@ TEST_CASE("bad input to measure is refused in one line") {
 TEST_CASE("an interrupted measurement keeps what is done") {
     const TemporaryFolder folder;
     const std::string output = folder / "output", errors = folder / "errors";
-    // Far too many frames; the interrupt comes when measuring has begun.
-    const std::string line = "timeout -s INT 20 '" PENUMBRA_PROGRAM "' measure two-boxes --size 48x32 --samples 128 "
+    // Far too many frames; the interrupt comes when measuring has begun, and once: a second one would end the program, and
+    // timeout sends it to the whole group of processes too if it is not told that it runs in the foreground.
+    const std::string line = "timeout --foreground -s INT 20 '" PENUMBRA_PROGRAM "' measure two-boxes --size 48x32 --samples 128 "
                              "--techniques none,hard --frames 1000000 --json > '" +
                              output + "' 2> '" + errors + "'";
     std::system(line.c_str());
