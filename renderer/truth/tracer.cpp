@@ -13,6 +13,18 @@
 namespace penumbra {
 namespace {
 
+#pragma GCC diagnostic push
+#pragma GCC diagnostic ignored "-Wunused-function" // what only the GPU calls
+namespace glsl {
+using glm::abs;
+using glm::max;
+using glm::normalize;
+using glm::vec2;
+using glm::vec3;
+#include "shaders/lib/octahedral.glsl"
+} // namespace glsl
+#pragma GCC diagnostic pop
+
 constexpr int lanes = 16;
 constexpr int tile = 8;      // pixels along a side
 constexpr size_t piece = 64; // points that a thread takes at once
@@ -36,13 +48,15 @@ glm::vec3 positionWorld(const TruthInput& input, size_t pixel) {
     return view.eyeWorld + input.depth[pixel] * (view.rayCorner + x * view.rayDx + y * view.rayDy);
 }
 
+glm::vec3 normalWorld(const TruthInput& input, size_t pixel) { return glsl::unitFromOctahedral(input.normal[pixel]); }
+
 std::vector<PixelClass> classesOf(const TruthInput& input) {
     const glm::mat4 fromWorld = lightFromWorld(input.light);
     std::vector<PixelClass> classes(input.depth.size(), PixelClass::NoSurface);
     for (size_t i = 0; i < classes.size(); ++i)
         if (input.depth[i] > 0)
             classes[i] = classify(input.light, glm::vec3(fromWorld * glm::vec4(positionWorld(input, i), 1)),
-                                  glm::mat3(fromWorld) * input.normalWorld[i]);
+                                  glm::mat3(fromWorld) * normalWorld(input, i));
     return classes;
 }
 
@@ -124,7 +138,7 @@ void Tracer::findPoints() {
         //   rounding of the position: eye, depth·ray and their sum, half a unit in the last place (2^-24) each; the
         //     depth itself comes of a handful of operations; so do the vertices, posed and as Embree subtracts the
         //     origin from them: 16 roundings of the largest coordinate in play, 2^-20
-        const glm::vec3 position = positionWorld(input_, pixel), normal = input_.normalWorld[pixel];
+        const glm::vec3 position = positionWorld(input_, pixel), normal = normalWorld(input_, pixel);
         const float footprint = input_.depth[pixel] * glm::length(view.rayDy);
         const float coordinate =
             std::max({largest(position), largest(view.eyeWorld), glm::distance(position, view.eyeWorld)});

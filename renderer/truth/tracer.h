@@ -62,6 +62,8 @@ Estimate estimateOf(const std::array<uint16_t, truthReplicates>& hidden, uint32_
 
 // The surface point that a pixel shows [m].
 glm::vec3 positionWorld(const TruthInput& input, size_t pixel);
+// And the unit normal there, towards the viewer.
+glm::vec3 normalWorld(const TruthInput& input, size_t pixel);
 
 std::vector<PixelClass> classesOf(const TruthInput& input);
 // How a surface point stands to a light. `normalLight` is unit.

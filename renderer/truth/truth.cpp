@@ -13,18 +13,6 @@
 namespace penumbra {
 namespace {
 
-#pragma GCC diagnostic push
-#pragma GCC diagnostic ignored "-Wunused-function" // what only the GPU calls
-namespace glsl {
-using glm::abs;
-using glm::max;
-using glm::normalize;
-using glm::vec2;
-using glm::vec3;
-#include "shaders/lib/octahedral.glsl"
-} // namespace glsl
-#pragma GCC diagnostic pop
-
 using Clock = std::chrono::steady_clock;
 double secondsSince(Clock::time_point start) { return std::chrono::duration<double>(Clock::now() - start).count(); }
 
@@ -36,7 +24,7 @@ uint64_t hashOf(const TruthInput& input, const TruthSettings& settings, const Ca
     hash.add(traceVersion);
     hash.add(casters.hash());
     hash.add(input.depth);
-    hash.add(input.normalWorld);
+    hash.add(input.normal);
     const View& view = input.view;
     for (const glm::vec3& v : {view.eyeWorld, view.rayCorner, view.rayDx, view.rayDy, input.light.position,
                                input.light.target, glm::vec3(halfSize(input.light), 0)})
@@ -92,9 +80,8 @@ TruthInput readTruthInput(const Renderer& renderer, const Session& session) {
     const Renderer::Pixels normals = renderer.readPicture(image("scene.normal"));
     const size_t pixels = input.depth.size();
     ensure(normals.values.size() == 4 * pixels, "depth and normals are of different sizes");
-    input.normalWorld.reserve(pixels);
-    for (size_t i = 0; i < pixels; ++i)
-        input.normalWorld.push_back(glsl::unitFromOctahedral({normals.values[4 * i], normals.values[4 * i + 1]}));
+    input.normal.reserve(pixels);
+    for (size_t i = 0; i < pixels; ++i) input.normal.emplace_back(normals.values[4 * i], normals.values[4 * i + 1]);
     return input;
 }
 

@@ -33,7 +33,7 @@ enum class PixelClass : uint8_t {
 struct TruthInput {
     View view;                          // size: width, height
     std::vector<float> depth;           // eye depth [m], 0: no surface; one a pixel, row 0 at the top
-    std::vector<glm::vec3> normalWorld; // unit, geometric, towards the viewer
+    std::vector<glm::vec2> normal;      // octahedral, of the world, geometric, towards the viewer
     std::shared_ptr<const Scene> scene; // every visible triangle of it casts, from both sides
     Pose pose;                          // of the scene
     AreaLight light;

@@ -273,7 +273,7 @@ TEST_CASE("pixels are told apart by how they stand to the light") {
     CHECK(count(truth, PixelClass::FacesAway) == 0);
     int cut = 0;
     for (size_t i = 0; i < truth.psi.size(); ++i) {
-        const glm::vec3 position = positionWorld(input, i), normal = input.normalWorld[i];
+        const glm::vec3 position = positionWorld(input, i), normal = normalWorld(input, i);
         if (truth.classes[i] == PixelClass::NoSurface) CHECK(truth.psi[i] == 0);
         if (truth.classes[i] == PixelClass::CutByHorizon && std::abs(normal.x) > 0.99f) {
             // The side at x = 0.4 sees the light's x in [0.4, 2] of [−2, 2].
