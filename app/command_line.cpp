@@ -118,6 +118,9 @@ constexpr ValueOption captureOptions[] = {
     {"-o,--output", "FILE", "the picture to write: .png, .exr, .pfm or .npy", &Options::output},
     {"--buffer", "LABEL[.CHANNEL]", "write this buffer instead of the picture; 'shadow' is the shadow image",
      &Options::buffer},
+    {"--truth", "alone|wipe|side-by-side|error[:GAIN]",
+     "trace the truth and show it alone or beside the technique, or the error, GAIN 1..100 times as strong",
+     &Options::truth},
 };
 
 constexpr ValueOption measureOptions[] = {
@@ -292,6 +295,20 @@ void adjustDisplay(DisplaySettings& display, const Options& options) {
     display.ambient = static_cast<float>(realOption("--ambient", options.ambient, limits::ambient, display.ambient));
 }
 
+// alone|wipe|side-by-side|error[:GAIN]
+void compareWithTruth(Comparison& comparison, std::string_view text) {
+    static constexpr std::string_view names[] = {"wipe", "alone", "side-by-side", "error"};
+    static constexpr CompareAs ways[] = {CompareAs::Wipe, CompareAs::Flip, CompareAs::SideBySide, CompareAs::Error};
+    const size_t colon = text.find(':');
+    const size_t way = nameOption("--truth", text.substr(0, colon), names);
+    comparison = {.against = Against::Truth, .as = ways[way], .exchanged = ways[way] == CompareAs::Flip};
+    if (colon == std::string_view::npos) return;
+    const std::optional<float> gain = parseNumber<float>(text.substr(colon + 1));
+    if (comparison.as != CompareAs::Error || !gain || !contains(Range{1, 100}, *gain))
+        refuse("--truth", text, "alone, wipe, side-by-side, error or error:GAIN with a gain of 1..100");
+    comparison.gain = *gain;
+}
+
 // A listing needs a scene only if one was named.
 std::shared_ptr<const Scene> openScene(const Options& options, const std::optional<PictureFacts>& like) {
     auto scene = std::make_shared<Scene>();
@@ -408,6 +425,7 @@ Session makeSession(const Options& given, Shot& shot) {
     if (options.ground) session.ground = nameOption("--ground", *options.ground, switches) == 1;
     if (options.size) session.size = parseSize(*options.size);
     adjustDisplay(session.display, options);
+    if (options.truth) compareWithTruth(session.comparison, *options.truth);
     if (options.clip) session.clip = session.scene->findClip(*options.clip);
     if (options.play) session.timeStep = 1.0 / 60;
     if (options.time || !like)

@@ -21,7 +21,7 @@ struct Options {
     std::vector<std::string> assignments; // --set
     std::optional<std::string> camera, light, lightShape, lightSize, ground;
     std::optional<std::string> time, show, exposure, ambient, textureLimit;
-    std::optional<std::string> output, buffer; // capture
+    std::optional<std::string> output, buffer, truth; // capture
     std::optional<std::string> view;
     std::optional<int> frames;
     std::optional<int> layer, level;                                     // of the buffer
