@@ -78,7 +78,7 @@ Surfaces drawSurfaces(Flow& flow, const View& view, const SceneState& state, con
     Draw draw{.shader = "geometry_buffer.glsl",
               .geometry = geometry,
               .poseVersion = state.poseVersion(),
-              .faces = Faces::AsMaterial,
+              .faces = Faces::Shown,
               .textured = true,
               .reversedDepth = true};
     PassSpec pass{.stage = Stage::Scene,

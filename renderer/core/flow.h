@@ -84,9 +84,10 @@ struct Compute {
     bool operator==(const Compute&) const = default;
 };
 
-// Which faces are drawn. AsMaterial culls what glTF culls. Nearest draws both, but of closed surfaces only the front:
-// seen from outside them, as the pass must be, their back is never nearest.
-enum class Faces : uint8_t { Both, Front, Back, AsMaterial, Nearest };
+// Which faces are drawn. Shown: those that glTF shows, both of a two-sided material and else the front. Casting: those,
+// and both of closed surfaces, so that a lamp within one is enclosed. Nearest: of closed surfaces only the front, which
+// is the same where they are seen from outside, as the pass must see them: their back is never nearest.
+enum class Faces : uint8_t { Casting, Both, Front, Back, Shown, Nearest };
 
 // Geometry through the rasteriser, onto all written images and a depth buffer of its own or the written depth image.
 // Clip depth is in [0, 1]. A colour image is cleared to `clear`, depth to its far end.

@@ -171,12 +171,7 @@ void GpuScene::planDraws(const SceneState& state) {
         const Drawable& d = state.drawables()[i];
         const Primitive& p = state.primitive(d);
         const Material& material = scene.materials[static_cast<size_t>(p.material)];
-        const Node& node = scene.nodes[d.node];
-        // Of a skin all joints are mirrored or none is.
-        const glm::mat4& placed =
-            isSkinned(node, p) ? state.pose().worldFromMesh[scene.skins[static_cast<size_t>(node.skin)].firstMatrix]
-                               : state.pose().worldFromNode[d.node];
-        const bool mirrored = glm::determinant(glm::mat3(placed)) < 0;
+        const bool mirrored = isMirrored(scene, state.pose(), d.node, p);
         order.push_back(
             {i, {0, 0, material.texture, material.masked, material.doubleSided, mirrored, true, p.closed, d.posed}});
     }
@@ -330,9 +325,10 @@ void GpuScene::draw(const Draw& draw, const Programs& programs, size_t firstPiec
     };
     const auto culls = [&](const Batch& batch) {
         switch (draw.faces) {
+        case Faces::Casting: return !batch.doubleSided && !batch.closed;
         case Faces::Both: return false;
-        case Faces::AsMaterial: return !batch.doubleSided;
-        case Faces::Nearest: return batch.closed;
+        case Faces::Shown: return !batch.doubleSided;
+        case Faces::Nearest: return !batch.doubleSided || batch.closed;
         default: return true;
         }
     };

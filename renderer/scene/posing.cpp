@@ -30,6 +30,14 @@ bool isPosed(const Node& node, const Primitive& primitive) {
     return isSkinned(node, primitive) || primitive.morphTargets > 0;
 }
 
+bool isMirrored(const Scene& scene, const Pose& pose, size_t node, const Primitive& primitive) {
+    const Node& of = scene.nodes[node];
+    const glm::mat4& placed = isSkinned(of, primitive)
+                                  ? pose.worldFromMesh[scene.skins[static_cast<size_t>(of.skin)].firstMatrix]
+                                  : pose.worldFromNode[node];
+    return glm::determinant(glm::mat3(placed)) < 0;
+}
+
 const glm::mat4& worldFromModel(const Pose& pose, const Scene& scene, size_t node, const Primitive& primitive) {
     return isSkinned(scene.nodes[node], primitive) ? identity : pose.worldFromNode[node];
 }

@@ -11,6 +11,10 @@ namespace penumbra {
 bool isSkinned(const Node& node, const Primitive& primitive);
 bool isPosed(const Node& node, const Primitive& primitive);
 
+// Whether it is drawn as a mirror shows it: triangles then turn the other way round. Of a skin all joints are mirrored
+// or none is.
+bool isMirrored(const Scene& scene, const Pose& pose, size_t node, const Primitive& primitive);
+
 // Places what a node draws: its matrix, or the identity where joints place the vertices in the world.
 const glm::mat4& worldFromModel(const Pose& pose, const Scene& scene, size_t node, const Primitive& primitive);
 

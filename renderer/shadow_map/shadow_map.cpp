@@ -191,7 +191,7 @@ ShadowMap drawShadowMap(Flow& flow, Scope scope, const Inputs& inputs, const Sha
     const LightViewBlock view = lightView(inputs, description);
     const Extent extent{.width = description.size, .height = description.size, .samples = description.samples};
     const std::string_view name = names[layer];
-    const bool nearestOnly = layer == 0 && description.faces == Faces::Both && seesFromOutside(inputs, view);
+    const bool nearestOnly = layer == 0 && description.faces == Faces::Casting && seesFromOutside(inputs, view);
     Draw draw{.shader = "shadow_map.glsl",
               .geometry = inputs.geometry,
               .poseVersion = inputs.poseVersion,

@@ -19,7 +19,7 @@ enum class Metric { Axial, Radial, RadialOfVertices };
 // Everything that makes one shadow map another; equal descriptions under one light are one map.
 struct ShadowMapDescription {
     int size = 1024; // texels along a side
-    Faces faces = Faces::Both;
+    Faces faces = Faces::Casting;
     LightSample sample = lightCentre;
     Metric metric = Metric::Axial;
     glm::vec2 range{0, 0};            // of radial depth [m], from and to; what is 0 is fitted to the scene
@@ -41,8 +41,8 @@ glm::vec2 gridShift(uint32_t i);
 // What every technique that reads a shadow map lets its user turn.
 struct ShadowMapParameters : ParameterGroup {
     struct Options {
-        Faces faces = Faces::Both; // at first
-        double largest = 16384;    // texels along a side
+        Faces faces = Faces::Casting; // at first
+        double largest = 16384;       // texels along a side
     };
     explicit ShadowMapParameters(ParameterSet& s) : ShadowMapParameters(s, Options{}) {}
     ShadowMapParameters(ParameterSet& s, const Options& options)
@@ -61,8 +61,10 @@ struct ShadowMapParameters : ParameterGroup {
                 {.id = "faces",
                  .value = double(options.faces),
                  .source = "Reeves 1987; Wang and Molnar 1994 (back faces)",
-                 .help = "Which faces cast. Both is right for every scene; back faces need no bias on closed objects, "
-                         "but leak light at thin ones.",
+                 .help =
+                     "Which faces cast. Casting: those that the scene shows, as in the truth: fronts, and backs where "
+                     "a material has two sides. Back faces need no bias on closed objects, but leak light at thin "
+                     "ones.",
                  .choices = facesNames}} {}
     Integer size;
     Choice<Faces> faces;
@@ -70,7 +72,7 @@ struct ShadowMapParameters : ParameterGroup {
 
     ShadowMapDescription describe(LightSample sample = lightCentre) const { return {size, faces, sample}; }
 
-    static constexpr std::string_view facesNames[] = {"both", "front", "back"};
+    static constexpr std::string_view facesNames[] = {"casting", "both", "front", "back"};
 };
 
 // How a comparison is kept from finding a surface in its own shadow (acne) without letting light under things.

@@ -450,7 +450,7 @@ private:
                                  .work = Draw{.shader = "objects.glsl",
                                               .geometry = inputs.geometry,
                                               .poseVersion = inputs.poseVersion,
-                                              .faces = Faces::AsMaterial,
+                                              .faces = Faces::Shown,
                                               .reversedDepth = true},
                                  .writes = {{"objects", Format::R32F, extent, objectChannels},
                                             {"objects-z", Format::Depth32F, extent, zChannels}},

@@ -46,7 +46,23 @@ float alphaAt(const TextureImage& image, glm::vec2 uv) {
                                                                       : "Embree failed"));
 }
 
+// Positive if the ray of a lane goes the way that Embree's normal of what it hits points.
+float towardsFront(const RTCFilterFunctionNArguments& arguments, unsigned lane) {
+    const unsigned n = arguments.N;
+    return RTCRayN_dir_x(arguments.ray, n, lane) * RTCHitN_Ng_x(arguments.hit, n, lane) +
+           RTCRayN_dir_y(arguments.ray, n, lane) * RTCHitN_Ng_y(arguments.hit, n, lane) +
+           RTCRayN_dir_z(arguments.ray, n, lane) * RTCHitN_Ng_z(arguments.hit, n, lane);
+}
+
 } // namespace
+
+// Of the lanes that are about to hit a triangle with one face that casts, those that meet its back go on: the light,
+// where they are heading, must be before the front.
+void Casters::passThroughBacks(const RTCFilterFunctionNArguments* arguments) {
+    const unsigned n = arguments->N;
+    for (unsigned lane = 0; lane < n; ++lane)
+        if (towardsFront(*arguments, lane) <= 0) arguments->valid[lane] = 0;
+}
 
 // Of the lanes that are about to hit a masked triangle, those whose point of it does not exist go on.
 void Casters::passThroughHoles(const RTCFilterFunctionNArguments* arguments) {
@@ -57,6 +73,10 @@ void Casters::passThroughHoles(const RTCFilterFunctionNArguments* arguments) {
     const float least = leastAlpha(*masked.material);
     for (unsigned lane = 0; lane < n; ++lane) {
         if (arguments->valid[lane] != -1) continue;
+        if (masked.front != 0 && masked.front * towardsFront(*arguments, lane) <= 0) {
+            arguments->valid[lane] = 0;
+            continue;
+        }
         const float u = RTCHitN_u(arguments->hit, n, lane), v = RTCHitN_v(arguments->hit, n, lane), w = 1 - u - v;
         const uint32_t* corner =
             scene.indices.data() + primitive.firstIndex + 3 * size_t(RTCHitN_primID(arguments->hit, n, lane));
@@ -88,19 +108,25 @@ Casters::Casters(std::shared_ptr<const Scene> scene, const Pose& pose, int threa
                 if (primitive.indexCount == 0 || (material.masked && leastAlpha(material) > 0) != masked) continue;
                 if (progress) progress->report("posing", 0);
                 posedPositions(*source_, pose_, n, primitive, posed);
-                take(primitive, material);
+                // Embree's normal is (B − A) × (C − A), as glTF's front is seen unless a mirror shows it.
+                const bool oneSided = !material.doubleSided && !primitive.closed;
+                take(primitive, material, !oneSided ? 0 : isMirrored(*source_, pose_, n, primitive) ? -1 : 1);
                 positions_.insert(positions_.end(), posed.begin(), posed.end());
             }
         }
     };
-    drawn(false, [&](const Primitive& primitive, const Material&) {
+    drawn(false, [&](const Primitive& primitive, const Material&, int front) {
         const uint32_t first = static_cast<uint32_t>(positions_.size());
-        for (uint32_t i = 0; i < primitive.indexCount; ++i)
-            indices_.push_back(first + source_->indices[primitive.firstIndex + i]);
+        std::vector<uint32_t>& indices = front == 0 ? indices_ : oneSided_;
+        const uint32_t* corner = source_->indices.data() + primitive.firstIndex;
+        for (uint32_t i = 0; i < primitive.indexCount; i += 3, corner += 3)
+            for (const int c : {0, front < 0 ? 2 : 1, front < 0 ? 1 : 2}) indices.push_back(first + corner[c]);
     });
     const size_t opaqueVertices = positions_.size();
-    drawn(true, [&](const Primitive& primitive, const Material& material) {
-        masked_.push_back({source_.get(), &primitive, &material, static_cast<uint32_t>(positions_.size())});
+    drawn(true, [&](const Primitive& primitive, const Material& material, int front) {
+        masked_.push_back({source_.get(), &primitive, &material, static_cast<uint32_t>(positions_.size()),
+                           static_cast<float>(front)});
+        hash.add(front);
         hash.addBytes(source_->indices.data() + primitive.firstIndex, primitive.indexCount * sizeof(uint32_t));
         hash.addBytes(source_->uvs.data() + primitive.firstVertex, primitive.vertexCount * sizeof(glm::vec2));
         if (!source_->colours.empty())
@@ -117,6 +143,7 @@ Casters::Casters(std::shared_ptr<const Scene> scene, const Pose& pose, int threa
         }
     hash.add(positions_);
     hash.add(indices_);
+    hash.add(oneSided_);
     hash_ = hash.value();
     positions_.push_back(glm::vec3(0)); // Embree reads the last vertex as 16 bytes
 
@@ -127,9 +154,10 @@ Casters::Casters(std::shared_ptr<const Scene> scene, const Pose& pose, int threa
     rtcSetSceneFlags(scene_, RTC_SCENE_FLAG_ROBUST);
     rtcSetSceneBuildQuality(scene_, RTC_BUILD_QUALITY_MEDIUM);
     if (!indices_.empty()) attach(indices_.data(), indices_.size() / 3, 0, opaqueVertices, nullptr);
+    if (!oneSided_.empty()) attach(oneSided_.data(), oneSided_.size() / 3, 0, opaqueVertices, passThroughBacks);
     for (Masked& masked : masked_)
         attach(source_->indices.data() + masked.primitive->firstIndex, masked.primitive->indexCount / 3,
-               masked.firstVertex, masked.primitive->vertexCount, &masked);
+               masked.firstVertex, masked.primitive->vertexCount, passThroughHoles, &masked);
     if (progress)
         rtcSetSceneProgressMonitorFunction(
             scene_, [](void* told, double) { return !static_cast<Progress*>(told)->cancelled(); }, progress);
@@ -155,21 +183,21 @@ std::vector<Shafts::Triangle> Casters::triangles() const {
             all.push_back({firstVertex + indices[i], firstVertex + indices[i + 1], firstVertex + indices[i + 2]});
     };
     add(indices_.data(), indices_.size(), 0);
+    add(oneSided_.data(), oneSided_.size(), 0);
     for (const Masked& masked : masked_)
         add(source_->indices.data() + masked.primitive->firstIndex, masked.primitive->indexCount, masked.firstVertex);
     return all;
 }
 
-void Casters::attach(const uint32_t* indices, size_t triangles, size_t firstVertex, size_t vertices, Masked* masked) {
+void Casters::attach(const uint32_t* indices, size_t triangles, size_t firstVertex, size_t vertices,
+                     RTCFilterFunctionN filter, Masked* masked) {
     const RTCGeometry geometry = rtcNewGeometry(device_, RTC_GEOMETRY_TYPE_TRIANGLE);
     rtcSetSharedGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, positions_.data() + firstVertex,
                                0, sizeof(glm::vec3), vertices);
     rtcSetSharedGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, indices, 0, 3 * sizeof(uint32_t),
                                triangles);
-    if (masked) {
-        rtcSetGeometryUserData(geometry, masked);
-        rtcSetGeometryOccludedFilterFunction(geometry, passThroughHoles);
-    }
+    rtcSetGeometryUserData(geometry, masked);
+    if (filter) rtcSetGeometryOccludedFilterFunction(geometry, filter);
     rtcCommitGeometry(geometry);
     rtcAttachGeometry(scene_, geometry);
     rtcReleaseGeometry(geometry);

@@ -22,7 +22,8 @@ public:
     Casters(const Casters&) = delete;
     Casters& operator=(const Casters&) = delete;
 
-    // Both faces of every triangle cast; points of masked materials that do not exist let rays pass.
+    // What casts is what the scene shows: both faces of triangles of two-sided materials and of closed surfaces, else
+    // the front; points of masked materials that do not exist let rays pass. Rays go from a surface to the light.
     void occluded(const int* valid, RTCRay16& rays) const { occluded16(scene_, valid, rays); }
 
     // Built when it is asked for first: a first picture needs none.
@@ -41,15 +42,19 @@ private:
         const Primitive* primitive;
         const Material* material;
         uint32_t firstVertex; // of positions_
+        float front;          // 1 or −1: Embree's normal is of the only face that casts, or of the other; 0: both do
     };
+    static void passThroughBacks(const RTCFilterFunctionNArguments* arguments);
     static void passThroughHoles(const RTCFilterFunctionNArguments* arguments);
     std::vector<Shafts::Triangle> triangles() const;
-    void attach(const uint32_t* indices, size_t triangles, size_t firstVertex, size_t vertices, Masked* masked);
+    void attach(const uint32_t* indices, size_t triangles, size_t firstVertex, size_t vertices,
+                RTCFilterFunctionN filter, Masked* masked = nullptr);
 
     std::shared_ptr<const Scene> source_;
     Pose pose_;
     std::vector<glm::vec3> positions_; // world; opaque primitives, then masked ones, then one of padding
-    std::vector<uint32_t> indices_;    // of the opaque triangles
+    std::vector<uint32_t> indices_;    // of the opaque triangles with two faces that cast
+    std::vector<uint32_t> oneSided_;   // and of those with one, which Embree's normal is of
     std::vector<Masked> masked_;
     mutable std::once_flag shaftsOnce_;
     mutable std::optional<Shafts> shafts_;

@@ -34,7 +34,7 @@ struct TruthInput {
     View view;                          // size: width, height
     std::vector<float> depth;           // eye depth [m], 0: no surface; one a pixel, row 0 at the top
     std::vector<glm::vec2> normal;      // octahedral, of the world, geometric, towards the viewer
-    std::shared_ptr<const Scene> scene; // every visible triangle of it casts, from both sides
+    std::shared_ptr<const Scene> scene; // what it shows casts; see renderer/truth/casters.h
     Pose pose;                          // of the scene
     AreaLight light;
     uint32_t seed = 0;

@@ -317,6 +317,52 @@ TEST_CASE("a directional light's edge is a disk's share") {
     CHECK(most < 0.01);
 }
 
+TEST_CASE("a sheet casts from the side that it shows, for rays as in maps") {
+    // Over the floor: at x < 0 a sheet that faces the light, at x > 0 one that turns its back on it.
+    const auto sheets = [](bool doubleSided, bool masked, bool mirrored) {
+        auto scene = std::make_shared<Scene>(*SceneBuilder()
+                                                  .quad({-2, 1, 1}, {-1, 1, 1}, {-1, 1, -1}, {-2, 1, -1})
+                                                  .quad({1, 1, -1}, {2, 1, -1}, {2, 1, 1}, {1, 1, 1})
+                                                  .floor(3)
+                                                  .build());
+        scene->materials.push_back({.masked = masked, .doubleSided = doubleSided});
+        for (size_t node = 0; node < 4; ++node) {
+            scene->meshes[node].primitives[0].material = 1;
+            if (mirrored) scene->nodes[node].scale.x = -1;
+        }
+        return scene;
+    };
+    const auto shareHidden = [](const std::vector<float>& psi, const TruthInput& input, bool left) {
+        int pixels = 0;
+        double sum = 0;
+        for (size_t i = 0; i < psi.size(); ++i) {
+            const glm::vec3 p = positionWorld(input, i);
+            if (input.depth[i] <= 0 || std::abs(p.y) > 1e-3f || std::abs(p.z) > 0.8f) continue;
+            if (const float x = left ? -p.x : p.x; x < 1.2f || x > 1.8f) continue;
+            ++pixels, sum += psi[i];
+        }
+        REQUIRE(pixels > 50);
+        return sum / pixels;
+    };
+    for (const bool doubleSided : {false, true})
+        for (const bool masked : {false, true})
+            for (const bool mirrored : {false, true}) {
+                CAPTURE(doubleSided, masked, mirrored);
+                Session s = session(sheets(doubleSided, masked, mirrored));
+                s.light = {
+                    .shape = LightShape::Directional, .position = {0, 9, 0}, .target = {0, 0, 0}, .size = {0, 0}};
+                s.camera = {.eye = {0, 0.9f, 5}, .target = {0, 0, 0}, .fovY = 60};
+                s.size = {200, 150};
+                const TruthInput input = inputOf(s);
+                // To a mirror, left is right, and a sheet that faced up still does.
+                const bool facing = !mirrored;
+                for (const std::vector<float>& psi : {traceTruth(input, exactly(16)).psi, draw(s).psi.values}) {
+                    CHECK(shareHidden(psi, input, facing) > 0.99);
+                    CHECK(shareHidden(psi, input, !facing) == Approx(doubleSided ? 1 : 0).margin(0.01));
+                }
+            }
+}
+
 namespace {
 
 // A floor under a plate of 8 x 8 m at height 2 whose texture hides only some of it, seen by a light of a thousandth of
