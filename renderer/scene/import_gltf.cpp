@@ -4,6 +4,7 @@
 #include "renderer/scene/gltf_accessors.h"
 #include "renderer/scene/gltf_draco.h"
 #include "renderer/scene/gltf_file.h"
+#include "renderer/scene/part_bounds.h"
 
 #include <fmt/format.h>
 #include <glm/gtc/matrix_access.hpp>
@@ -1122,9 +1123,11 @@ Scene imported(GltfFile file, const ImportChoice& choice, Progress* progress) {
     Scene scene = Importer(std::move(file), choice, progress).run(); // and the file's bytes are gone
     for (size_t m = 0; m < scene.meshes.size(); ++m) {
         if (progress) progress->report("finding closed surfaces", 0.8 + 0.2 * double(m) / double(scene.meshes.size()));
-        for (Primitive& primitive : scene.meshes[m].primitives)
-            primitive.closed = primitive.influenceSets == 0 && primitive.morphTargets == 0 &&
-                               !scene.materials[size_t(primitive.material)].masked && isClosedSurface(scene, primitive);
+        for (Primitive& primitive : scene.meshes[m].primitives) {
+            if (primitive.influenceSets > 0 || primitive.morphTargets > 0) continue;
+            primitive.closed = !scene.materials[size_t(primitive.material)].masked && isClosedSurface(scene, primitive);
+            primitive.parts = partBounds(scene, primitive);
+        }
     }
     return scene;
 }

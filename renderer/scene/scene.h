@@ -74,6 +74,8 @@ struct Primitive {
     int material = 0;
     bool closed = false; // a closed surface without holes in its material, see closed_surface.h
     Bounds bounds;       // model space, without morph targets
+    std::vector<Bounds>
+        parts; // that hold it more closely, if it is rigid; see part_bounds.h. Empty: only `bounds` does
 
     uint32_t influenceSets = 0;  // 0: no skin, 1: up to four joints a vertex, 2: up to eight
     uint32_t firstInfluence = 0; // of Scene::influences: set s of vertex v is at firstInfluence + s·vertexCount + v

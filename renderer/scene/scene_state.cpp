@@ -65,11 +65,18 @@ void SceneState::update(size_t clip, double seconds, bool ground) {
 void SceneState::measure(bool ground) {
     moving_ = false;
     occluders_.clear();
+    parts_.clear();
     bounds_ = Bounds();
+    size_t parts = 0;
+    for (const Drawable& d : drawables_) parts += primitive(d).parts.size();
+    parts_.reserve(parts); // they stay where they are
     for (const Drawable& d : drawables_) {
         occluders_.push_back({.boundsWorld = posedBounds(*scene_, pose_, d.node, primitive(d)),
                               .closed = primitive(d).closed,
                               .moved = moved(d)});
+        for (const Bounds& part : primitive(d).parts)
+            parts_.push_back(transformed(part, pose_.worldFromNode[d.node]));
+        occluders_.back().partsWorld = std::span(parts_).last(primitive(d).parts.size());
         moving_ = moving_ || occluders_.back().moved;
         bounds_.add(occluders_.back().boundsWorld);
     }

@@ -50,6 +50,7 @@ private:
     uint64_t poseVersion_ = 0;
     std::vector<Drawable> drawables_;
     std::vector<Occluder> occluders_;
+    std::vector<Bounds> parts_; // of the occluders
     std::optional<Ground> ground_;
     Bounds bounds_;
 };

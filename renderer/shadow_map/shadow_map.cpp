@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <optional>
+#include <utility>
 
 namespace penumbra {
 namespace {
@@ -22,33 +24,129 @@ struct Window {
     Window intersected(const Window& o) const { return {glm::max(min, o.min), glm::min(max, o.max)}; }
 };
 
-// The eight corners of a box in light space, z turned into the axial depth d = −z.
-std::array<vec3, 8> cornersInLight(const Bounds& box, const mat4& lightFromWorld) {
-    std::array<vec3, 8> corners;
-    for (int i = 0; i < 8; ++i) {
-        const vec3 world{i & 1 ? box.max.x : box.min.x, i & 2 ? box.max.y : box.min.y, i & 4 ? box.max.z : box.min.z};
-        const vec3 light = vec3(lightFromWorld * vec4(world, 1));
-        corners[static_cast<size_t>(i)] = {light.x, light.y, -light.z};
-    }
+// A space for fitting: light space with z turned into the axial depth d = −z.
+vec3 fittingFromLight(vec3 p) { return {p.x, p.y, -p.z}; }
+vec3 fittingFromWorld(vec3 p, const mat4& lightFromWorld) {
+    return fittingFromLight(vec3(lightFromWorld * vec4(p, 1)));
+}
+
+// Points whose convex hull holds a thing: the corners of a box, or of what is left of it.
+struct Corners {
+    std::array<vec3, 64> points;
+    size_t count = 0;
+    void add(vec3 p) { points[count++] = p; }
+    const vec3* begin() const { return points.data(); }
+    const vec3* end() const { return points.data() + count; }
+};
+
+Corners cornersOf(const Bounds& box, const mat4& lightFromWorld) {
+    Corners corners;
+    for (int i = 0; i < 8; ++i)
+        corners.add(fittingFromWorld(
+            {i & 1 ? box.max.x : box.min.x, i & 2 ? box.max.y : box.min.y, i & 4 ? box.max.z : box.min.z},
+            lightFromWorld));
     return corners;
 }
 
-struct Fit {
+// A convex region, n·P + w >= 0, and such corners of it as a box may hold within.
+struct Region {
+    std::array<vec4, 6> planes;
+    size_t planeCount = 0;
+    std::array<vec3, 4> tips;
+    void bound(vec3 normal, vec3 through) { planes[planeCount++] = vec4(normal, -glm::dot(normal, through)); }
+};
+
+// What lies within of a box with these eight corners: its faces, cut by the planes in turn (Sutherland and Hodgman
+// 1974), and the region's tips if they are in the box.
+Corners within(const Region& region, const Corners& box) {
+    static constexpr size_t faces[6][4] = {{0, 1, 3, 2}, {4, 5, 7, 6}, {0, 1, 5, 4},
+                                           {2, 3, 7, 6}, {0, 2, 6, 4}, {1, 3, 7, 5}};
+    Corners left;
+    for (const auto& face : faces) {
+        std::array<vec3, 10> polygon, cut; // each plane adds a corner at most
+        size_t count = 0;
+        for (const size_t i : face) polygon[count++] = box.points[i];
+        for (const vec4& plane : std::span(region.planes).first(region.planeCount)) {
+            size_t kept = 0;
+            for (size_t i = 0; i < count; ++i) {
+                const vec3 from = polygon[i], to = polygon[(i + 1) % count];
+                const float a = glm::dot(plane, vec4(from, 1)), b = glm::dot(plane, vec4(to, 1));
+                if (a >= 0) cut[kept++] = from;
+                if ((a >= 0) != (b >= 0)) cut[kept++] = glm::mix(from, to, a / (a - b));
+            }
+            count = kept;
+            std::swap(polygon, cut);
+        }
+        for (size_t i = 0; i < count; ++i) left.add(polygon[i]);
+    }
+    const vec3 x = box.points[1] - box.points[0], y = box.points[2] - box.points[0], z = box.points[4] - box.points[0];
+    const vec3 most(glm::dot(x, x), glm::dot(y, y), glm::dot(z, z));
+    for (const vec3& tip : region.tips) {
+        const vec3 p = tip - box.points[0], along(glm::dot(p, x), glm::dot(p, y), glm::dot(p, z));
+        // A flat box, with a side of no length, has no inside.
+        if (glm::all(glm::greaterThan(along, vec3(0))) && glm::all(glm::lessThan(along, most))) left.add(tip);
+    }
+    return left;
+}
+
+// The pyramid that a view shows, from its near plane on.
+Region shownBy(const View& view, const mat4& lightFromWorld) {
+    const vec3 across = float(view.size.x) * view.rayDx, upwards = float(view.size.y) * view.rayDy;
+    const std::array<vec3, 4> rays{view.rayCorner, view.rayCorner + across, view.rayCorner + across + upwards,
+                                   view.rayCorner + upwards};
+    const auto at = [&](vec3 ray, float depth) {
+        return fittingFromWorld(view.eyeWorld + depth * ray, lightFromWorld);
+    };
+    const vec3 eye = at(vec3(0), 0), inside = at(0.5f * (rays[0] + rays[2]), 2 * view.near);
+    Region region;
+    for (size_t i = 0; i < 4; ++i) region.tips[i] = at(rays[i], view.near);
+    const auto bound = [&](vec3 a, vec3 b, vec3 c) {
+        const vec3 normal = glm::cross(b - a, c - a);
+        region.bound(glm::dot(normal, inside - a) < 0 ? -normal : normal, a);
+    };
+    for (size_t i = 0; i < 4; ++i) bound(eye, region.tips[i], region.tips[(i + 1) % 4]);
+    bound(region.tips[0], region.tips[1], region.tips[2]);
+    return region;
+}
+
+// What may stand between the light and a box of the fitting space.
+Region before(const Bounds& box, vec2 halfLight, bool directional) {
+    Region region;
+    region.bound({0, 0, -1}, box.max);
+    if (!directional) region.bound({0, 0, 1}, vec3(0));
+    for (const int axis : {0, 1})
+        for (const float side : {-1.0f, 1.0f}) {
+            // The steepest line from an edge of the light past the box: side · p <= from + slope · d.
+            const float half = halfLight[axis], edge = side < 0 ? -box.min[axis] : box.max[axis];
+            const float d = edge > half ? box.min.z : box.max.z;
+            const float slope = directional ? -half : (edge - half) / std::max(d, 1e-6f * box.max.z + 1e-30f);
+            const float from = directional ? edge + half * box.max.z : half;
+            vec3 normal(0, 0, slope), through(0);
+            normal[axis] = -side;
+            through[axis] = side * from;
+            region.bound(normal, through);
+        }
+    for (int i = 0; i < 4; ++i)
+        region.tips[size_t(i)] = vec3(halfLight * vec2(i & 1 ? 1 : -1, i & 2 ? 1 : -1), directional ? box.max.z : 0);
+    return region;
+}
+
+struct MapFit {
     float near, far, reference; // axial depths
     Window window;
     float farthest = 1; // from any point of the light
 };
 
-// Where the box's corners fall on the reference plane, from every corner of the light. Parts before the near plane are
-// moved onto it, with the whole box's cross-section, which contains theirs.
-Window project(const std::array<vec3, 8>& corners, const Fit& fit, vec2 halfLight, bool directional) {
+// Where corners fall on the reference plane, from every corner of the light. Parts before the near plane are moved onto
+// it, with the whole cross-section, which contains theirs.
+Window project(const Corners& corners, const MapFit& fit, vec2 halfLight, bool directional) {
     Window window;
     const bool straddles = std::any_of(corners.begin(), corners.end(), [&](vec3 c) { return c.z < fit.near; });
     const auto add = [&](vec2 xy, float d) {
-        for (int i = 0; i < 4; ++i) {
-            const vec2 s = halfLight * vec2(i & 1 ? 1 : -1, i & 2 ? 1 : -1);
-            window.add(directional ? xy + s * (d - fit.reference) : s + (xy - s) * (fit.reference / d));
-        }
+        // Shears the box around the light: from its corner s a point comes to s + (xy − s) f/d.
+        const vec2 centre = directional ? xy : xy * (fit.reference / d);
+        const vec2 reach = halfLight * std::abs(directional ? d - fit.reference : 1 - fit.reference / d);
+        window.add(centre - reach), window.add(centre + reach);
     };
     for (const vec3& c : corners) {
         if (straddles && !directional) add(vec2(c), fit.near);
@@ -57,17 +155,37 @@ Window project(const std::array<vec3, 8>& corners, const Fit& fit, vec2 halfLigh
     return window;
 }
 
-Fit fitMap(const AreaLight& light, std::span<const Occluder> occluders, const mat4& fromWorld, vec2 half) {
+std::span<const Bounds> boxesOf(const Occluder& occluder) {
+    return occluder.partsWorld.empty() ? std::span(&occluder.boundsWorld, 1) : occluder.partsWorld;
+}
+
+// `view`: of receivers, only what it shows counts, and of casters, what may stand before that.
+MapFit fitMap(const AreaLight& light, std::span<const Occluder> occluders, const mat4& fromWorld, vec2 half,
+              const View* view) {
     const bool directional = light.shape == LightShape::Directional;
+    const auto eachBox = [&](auto&& take) {
+        for (const Occluder& occluder : occluders)
+            for (const Bounds& box : boxesOf(occluder)) take(cornersOf(box, fromWorld), occluder.casts);
+    };
+    const std::optional<Region> shown = view ? std::optional(shownBy(*view, fromWorld)) : std::nullopt;
+    std::optional<Region> between;
+    if (shown) {
+        Bounds seen;
+        eachBox([&](const Corners& box, bool) {
+            for (const vec3& c : within(*shown, box)) seen.add(c);
+        });
+        if (!seen.empty() && (directional || seen.max.z > 0)) between = before(seen, half, directional);
+    }
     float nearest = 1e30f, farthest = -1e30f, radius = 0;
-    for (const Occluder& occluder : occluders) {
-        for (const vec3& c : cornersInLight(occluder.boundsWorld, fromWorld)) {
-            if (occluder.casts) nearest = std::min(nearest, c.z);
+    eachBox([&](const Corners& box, bool casts) {
+        for (const vec3& c : box) {
             farthest = std::max(farthest, c.z);
             radius = std::max(radius, glm::length(c));
         }
-    }
-    Fit fit{0, 1, 1, {{-1, -1}, {1, 1}}};
+        if (!casts) return;
+        for (const vec3& c : between ? within(*between, box) : box) nearest = std::min(nearest, c.z);
+    });
+    MapFit fit{0, 1, 1, {{-1, -1}, {1, 1}}};
     const bool nothing = nearest > farthest || (!directional && farthest <= 0);
     if (nothing) return fit;
 
@@ -78,20 +196,27 @@ Fit fitMap(const AreaLight& light, std::span<const Occluder> occluders, const ma
     fit.reference = fit.far;
     fit.farthest = radius + glm::length(half) + slack;
 
+    const auto beyondNear = [&](const Corners& corners) {
+        return std::any_of(corners.begin(), corners.end(), [&](vec3 c) { return directional || c.z >= fit.near; });
+    };
     Window casters, receivers;
-    for (const Occluder& occluder : occluders) {
-        const auto corners = cornersInLight(occluder.boundsWorld, fromWorld);
-        if (!directional && std::all_of(corners.begin(), corners.end(), [&](vec3 c) { return c.z < fit.near; }))
-            continue;
-        const Window window = project(corners, fit, half, directional);
+    eachBox([&](const Corners& box, bool casts) {
+        if (casts && beyondNear(box)) {
+            const Window window = project(box, fit, half, directional);
+            casters.add(window.min), casters.add(window.max);
+        }
+        const Corners seen = shown ? within(*shown, box) : box;
+        if (!beyondNear(seen)) return;
         // A receiver looks at the whole light, past blockers that fall beside it on the reference plane.
         float d = -1e30f;
-        for (const vec3& c : corners) d = std::max(d, c.z);
+        for (const vec3& c : seen) d = std::max(d, c.z);
         const vec2 sees = directional ? half * (d - fit.near) : half * (fit.reference * (1 / fit.near - 1 / d));
-        const Window seen = window.grown(glm::max(sees, vec2(0)));
-        receivers.add(seen.min), receivers.add(seen.max);
-        if (occluder.casts) casters.add(window.min), casters.add(window.max);
-    }
+        const Window window = project(seen, fit, half, directional).grown(glm::max(sees, vec2(0)));
+        receivers.add(window.min), receivers.add(window.max);
+    });
+        fprintf(stderr, "near %g far %g nearest %g cast %g %g %g %g recv %g %g %g %g\n", fit.near, fit.far, nearest,
+                casters.min.x, casters.min.y, casters.max.x, casters.max.y, receivers.min.x, receivers.min.y,
+                receivers.max.x, receivers.max.y);
     fit.window = casters.intersected(receivers);
     if (!directional) {
         const vec2 widest = half + widestTangent * fit.reference;
@@ -113,7 +238,8 @@ LightViewBlock lightView(const Inputs& inputs, const ShadowMapDescription& descr
     ensure(!(directional && radial), "a directional light has no point to measure radial depth from");
     const mat4 fromWorld = lightFromWorld(light);
     const vec2 half = halfSize(light);
-    const Fit fit = fitMap(light, inputs.occluders, fromWorld, half);
+    const MapFit fit =
+        fitMap(light, inputs.occluders, fromWorld, half, description.fit == Fit::View ? &inputs.view : nullptr);
     const float f = fit.reference;
 
     // Square texels, and a border of empty ones, whole after a shift too.

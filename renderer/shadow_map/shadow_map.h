@@ -16,10 +16,14 @@ inline constexpr LightSample lightCentre{0, 0};
 // of the vertices and interpolated.
 enum class Metric { Axial, Radial, RadialOfVertices };
 
+// What the map's window holds: all that receives shadows, or of that what the view shows.
+enum class Fit { Scene, View };
+
 // Everything that makes one shadow map another; equal descriptions under one light are one map.
 struct ShadowMapDescription {
     int size = 1024; // texels along a side
     Faces faces = Faces::Casting;
+    Fit fit = Fit::Scene;
     LightSample sample = lightCentre;
     Metric metric = Metric::Axial;
     glm::vec2 range{0, 0};            // of radial depth [m], from and to; what is 0 is fitted to the scene
@@ -42,7 +46,8 @@ glm::vec2 gridShift(uint32_t i);
 struct ShadowMapParameters : ParameterGroup {
     struct Options {
         Faces faces = Faces::Casting; // at first
-        double largest = 16384;       // texels along a side
+        Fit fit = Fit::Scene;
+        double largest = 16384; // texels along a side
     };
     explicit ShadowMapParameters(ParameterSet& s) : ShadowMapParameters(s, Options{}) {}
     ShadowMapParameters(ParameterSet& s, const Options& options)
@@ -65,14 +70,24 @@ struct ShadowMapParameters : ParameterGroup {
                      "Which faces cast. Casting: those that the scene shows, as in the truth: fronts, and backs where "
                      "a material has two sides. Back faces need no bias on closed objects, but leak light at thin "
                      "ones.",
-                 .choices = facesNames}} {}
+                 .choices = facesNames}}
+        , fit{set,
+              {.id = "fit",
+               .label = "Fit to",
+               .value = double(options.fit),
+               .source = "Brabec, Annen and Seidel 2002",
+               .help = "What the map's texels are spread over. Those of the scene stay where they are while the camera "
+                       "moves; those of the view are smaller where the view shows a part of the scene, but crawl.",
+               .choices = fitNames}} {}
     Integer size;
     Choice<Faces> faces;
+    Choice<Fit> fit;
     End end{set};
 
-    ShadowMapDescription describe(LightSample sample = lightCentre) const { return {size, faces, sample}; }
+    ShadowMapDescription describe(LightSample sample = lightCentre) const { return {size, faces, fit, sample}; }
 
     static constexpr std::string_view facesNames[] = {"casting", "both", "front", "back"};
+    static constexpr std::string_view fitNames[] = {"scene", "view"};
 };
 
 // How a comparison is kept from finding a surface in its own shadow (acne) without letting light under things.
@@ -132,8 +147,8 @@ struct ReceiverPlane : Flag {
                         "kernels and penumbrae then need no more bias than narrow ones."}) {}
 };
 
-// The projection of a map. The window and the depth range are fitted to all casters and receivers as seen from the
-// whole light, so they are the same for every sample.
+// The projection of a map. The window and the depth range are fitted to casters and receivers as seen from the whole
+// light, so they are the same for every sample.
 LightViewBlock lightView(const Inputs& inputs, const ShadowMapDescription& description);
 
 // Draws a map: an image "shadow-map" ("shadow-map-2" for the second layer ...) of linear depth in [0, 1], 1 where

@@ -7,7 +7,7 @@ namespace penumbra {
 namespace {
 
 struct Parameters : ParameterSet {
-    ShadowMapParameters map{*this};
+    ShadowMapParameters map{*this, {.fit = Fit::View}};
     BiasParameters bias{*this, {.slope = 0.5, .normalOffset = 0.5}};
 };
 

@@ -39,8 +39,8 @@ struct Parameters : ParameterSet {
                           .help = "In the window the N maps come a few a frame while the view stands still, and the "
                                   "picture is the mean of those so far. Captures and measurements draw all N in each "
                                   "frame."}};
-    ShadowMapParameters map{*this};
-    BiasParameters bias{*this, {.slope = 0.05, .normalOffset = 0.5}};
+    ShadowMapParameters map{*this, {.fit = Fit::View}};
+    BiasParameters bias{*this, {.slope = 0, .normalOffset = 0.25}};
 };
 
 struct MeanConstants {

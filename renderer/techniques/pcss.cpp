@@ -22,7 +22,7 @@ enum class Search { Centred, Uniform };
 constexpr std::string_view searchNames[] = {"centred", "uniform"};
 
 struct Parameters : ParameterSet {
-    ShadowMapParameters map{*this};
+    ShadowMapParameters map{*this, {.fit = Fit::View}};
     Integer searchTaps{*this,
                        {.id = "search-taps",
                         .label = "Search taps",
@@ -72,7 +72,7 @@ struct Parameters : ParameterSet {
                  .source = "Cranley and Patterson 1976; Jimenez 2014 (noise)",
                  .help = "Shifts or turns the taps differently in every pixel: bands become noise."}};
     ReceiverPlane receiverPlane{*this};
-    BiasParameters bias{*this, {.slope = 0.05, .normalOffset = 0.5}};
+    BiasParameters bias{*this, {.slope = 0.05, .normalOffset = 0.25}};
 };
 
 class Pcss final : public Technique {

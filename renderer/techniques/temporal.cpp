@@ -392,9 +392,9 @@ struct Parameters : ParameterSet {
                    .help = "How much larger than the picture the shadow buffer is, so that what comes into view has a "
                            "history."}};
     FilterParameters filter{*this};
-    ShadowMapParameters map{*this};
+    ShadowMapParameters map{*this, {.fit = Fit::View}};
     ReceiverPlane receiverPlane{*this};
-    BiasParameters bias{*this, {.slope = 0.05, .normalOffset = 0.5}};
+    BiasParameters bias{*this, {.slope = 0, .normalOffset = 0.25}};
 };
 
 struct HistoryConstants {

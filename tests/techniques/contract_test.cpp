@@ -259,8 +259,8 @@ TEST_CASE("the largest map works, or is refused with its name and size") {
         CAPTURE(card->id);
         s.textureLimit = 256 << 20;
         const auto side = static_cast<int>(size->value());
-        CHECK_THROWS_WITH(renderer().render(s), contains("the limit is 256 MiB") &&
-                                                    contains(fmt::format("{0}x{0}", side)));
+        CHECK_THROWS_WITH(renderer().render(s),
+                          contains("the limit is 256 MiB") && contains(fmt::format("{0}x{0}", side)));
         CHECK_FALSE(renderer().hasFrame());
         // Room for a depth map of 16384 texels a side and little more; what filters a map of 8192 is refused again.
         s.textureLimit = uint64_t(side > 8192 ? 1030 : 300) << 20;

@@ -25,7 +25,7 @@ struct Bench {
     std::vector<float> hard() {
         const ParameterSet& own = s.techniques.parameters();
         s.techniques.choose("hard");
-        for (const char* id : {"map-size", "faces", "depth-bias", "slope-bias", "normal-offset"})
+        for (const char* id : {"map-size", "faces", "fit", "depth-bias", "slope-bias", "normal-offset"})
             s.techniques.parameters().at(id).set(own.at(id).value());
         const std::vector<float> values = psi();
         s.techniques.choose("fractional-disk");

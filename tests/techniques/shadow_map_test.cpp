@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 // The shadow map itself, and the flow that instances of techniques share.
 #include "renderer/core/paths.h"
+#include "renderer/measure/errors.h"
 #include "renderer/scene/gpu_scene.h"
 #include "renderer/shadow_map/shadow_map.h"
 #include "tests/catch.h"
@@ -60,6 +61,7 @@ TEST_CASE("instances of one technique under two lights keep apart, and equal sha
     const auto a = makeTechnique(findCard("pcf")), b = makeTechnique(findCard("pcf")),
                c = makeTechnique(findCard("pcss"));
     b->parameters().at("kernel").set(9);
+    c->parameters().at("fit").setText("scene");
     const AreaLight first, second{.position = {2, 5, 0}};
     Bench bench;
     const Image psiA = bench.build(*a, "pcf", "a", first);
@@ -126,11 +128,42 @@ TEST_CASE("the map covers every caster from every corner of the light") {
     }
 }
 
+TEST_CASE("a map that is fitted to the view has finer texels there, and loses nothing that casts into it") {
+    // From close to a box of many: the shadow of a board that is out of the view falls into it.
+    SceneBuilder builder;
+    builder.floor(20).box({-0.2f, 0, -0.2f}, {0.2f, 0.4f, 0.2f}).box({-2, 2, -0.5f}, {-1, 2.1f, 0.5f});
+    for (int i = 0; i < 6; ++i) builder.box({-15 + 5.0f * float(i), 0, -12}, {-14 + 5.0f * float(i), 3, -11});
+    Session s = session(builder.build(), "light-sampling");
+    s.light = {.shape = LightShape::Rectangle, .position = {-3, 5, 0}, .target = {0, 0, 0}, .size = {0.5f, 0.5f}};
+    s.camera = {.eye = {1, 1.2f, 1.5f}, .target = {0, 0.2f, 0}, .fovY = 40};
+    s.progressive = false;
+    s.techniques.assign("samples=64");
+    s.techniques.assign("map-size=256");
+    renderer().reset();
+    renderer().render(s);
+    const Truth truth = traceTruth(readTruthInput(renderer(), s), {.leastSamples = 256, .mostSamples = 256});
+    const auto error = [&](const char* fit) {
+        s.techniques.assign(fit);
+        return errorsOf(draw(s).psi.values, truth).all.rmse;
+    };
+    const double scene = error("fit=scene"), view = error("fit=view");
+    CAPTURE(scene, view);
+    CHECK(view < 0.5 * scene);
+
+    Bench bench;
+    bench.occluders = renderer().state().occluders();
+    bench.view = renderer().view();
+    const Inputs inputs{bench.view, s.light, *bench.surfaces, nullptr, 1, bench.occluders, 0, 0};
+    const float wide = lightView(inputs, {.size = 256}).window.z;
+    CHECK(lightView(inputs, {.size = 256, .fit = Fit::View}).window.z < 0.5f * wide);
+}
+
 TEST_CASE("stored depth is linear and right, for perspective and directional lights") {
     for (const LightShape shape : {LightShape::Rectangle, LightShape::Directional}) {
         Session s = session(SceneBuilder().floor(3, 30).build(), "hard");
         s.light.shape = shape;
         s.techniques.assign("map-size=64");
+        s.techniques.assign("fit=scene");
         const std::vector<float> map = shadowMapOf(s);
         const Flow& flow = renderer().flow();
         const View view = sessionView(s, renderer().state().bounds());

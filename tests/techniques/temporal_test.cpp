@@ -74,6 +74,8 @@ TEST_CASE("a view at rest holds the mean of the same maps, to the last bit, what
     Bench b;
     b.samplesAlone();
     b.s.progressive = false;
+    b.set("fit", "scene"); // not to the margin, too
+    b.s.techniques.parametersOf("light-sampling").at("fit").setText("scene");
     for (const int n : {1, 3, 24}) {
         b.s.techniques.parametersOf("light-sampling").at("samples").set(n);
         const std::vector<float> mean = b.of("light-sampling");
