@@ -100,6 +100,7 @@ Picture viewedPicture(Renderer& renderer, const Selection& selection, int layer,
     for (int turn = 0; turn < Inspector::turns(source); ++turn)
         inspector.measure(source, look.channel, look.range, turn, statistics);
     const Channel& channel = channels[static_cast<size_t>(look.channel)];
+    if (!channel.names.empty()) look.map = ColourMap::Flags;
     if (channel.min < channel.max) {
         look.range = {channel.min, channel.max};
     } else {
@@ -182,6 +183,7 @@ void capture(const Options& options) {
     if (options.like)
         if (const std::string doubt = PictureFacts(*options.like).doubtAboutDriver(renderer.driver()); !doubt.empty())
             fmt::print(stderr, "note: {}\n", doubt);
+    renderer.inspect({.images = !shot.buffer.empty()});
     if (shot.buffer == "shadow") session.display.show = Show::Shadow; // nothing needs to be lit
     renderFrames(renderer, session, shot);
     if (session.comparison.against == Against::Truth && shot.buffer.empty()) showTruth(renderer, session);

@@ -27,7 +27,7 @@ Flow flowOf(const Session& session) {
     state.update(session.clip, session.time, session.ground);
     Flow flow;
     flow.begin();
-    buildFrame(flow, session, state, nullptr, nullptr);
+    buildFrame(flow, session, state, nullptr, nullptr, {.images = true});
     return flow;
 }
 
@@ -62,6 +62,7 @@ Json bufferJson(const Flow& flow, const Flow::ImageNode& image) {
                             {"symbol", channel.symbol},
                             {"meaning", channel.meaning},
                             {"unit", unitName(channel.unit)}});
+        if (!channel.names.empty()) channels.back()["names"] = channel.names;
         if (channel.min < channel.max) channels.back()["range"] = {channel.min, channel.max};
     }
     return {{"label", flow.label(image.label)},
@@ -80,9 +81,9 @@ Json techniqueJson(const Technique& technique, const Card& card, const Parameter
     for (const Parameter* parameter : parameterSet.all()) parameters.push_back(parameterJson(*parameter));
     for (const Flow::ImageNode& image : flow.images())
         if (image.repeat <= 1) buffers.push_back(bufferJson(flow, image)); // rounds of a repeat share their labels
-    return {{"id", card.id},           {"title", card.title}, {"authors", card.authors},
-            {"year", card.year},       {"venue", card.venue}, {"idea", card.idea},
-            {"assumes", card.assumes}, {"fails", card.fails}, {"parameters", parameters},
+    return {{"id", card.id},           {"title", card.title},          {"authors", card.authors},
+            {"year", card.year},       {"venue", card.venue},          {"idea", card.idea},
+            {"assumes", card.assumes}, {"fails", card.fails},          {"parameters", parameters},
             {"buffers", buffers},      {"reads", readsJson(technique)}};
 }
 
@@ -97,15 +98,9 @@ Json sceneJson(const Scene& scene) {
     for (const Animation& clip : scene.animations)
         clips.push_back(
             {{"name", clip.name}, {"seconds", std::round(1000.0 * static_cast<double>(clip.duration)) / 1000}});
-    return {{"file", scene.file.string()},
-            {"description", scene.description},
-            {"triangles", scene.triangleCount()},
-            {"parts", scene.sceneNames},
-            {"variants", scene.variantNames},
-            {"clips", clips},
-            {"cameras", names(scene.cameras)},
-            {"lights", names(scene.lights)},
-            {"notes", scene.notes}};
+    return {{"file", scene.file.string()},     {"description", scene.description}, {"triangles", scene.triangleCount()},
+            {"parts", scene.sceneNames},       {"variants", scene.variantNames},   {"clips", clips},
+            {"cameras", names(scene.cameras)}, {"lights", names(scene.lights)},    {"notes", scene.notes}};
 }
 
 Json builtInScenesJson() {
@@ -123,7 +118,8 @@ Json listing(const Options& options) {
     for (const Card* card : catalogue()) {
         if (options.technique && card->id != *options.technique) continue;
         session.techniques.choose(card->id);
-        techniques.push_back(techniqueJson(session.techniques.technique(), *card, session.techniques.parameters(), flowOf(session)));
+        techniques.push_back(
+            techniqueJson(session.techniques.technique(), *card, session.techniques.parameters(), flowOf(session)));
     }
     Json json = {{"version", PENUMBRA_VERSION},
                  {"techniques", techniques},
@@ -199,7 +195,8 @@ void list(const Options& options) {
     if (json.contains("scene")) printScene(json["scene"]);
     for (const Json& technique : json["techniques"]) printTechnique(technique);
     fmt::print("Scenes\n");
-    for (const Json& scene : json["scenes"]) fmt::print("  {:<24} {}\n", text(scene, "name"), text(scene, "description"));
+    for (const Json& scene : json["scenes"])
+        fmt::print("  {:<24} {}\n", text(scene, "name"), text(scene, "description"));
     fmt::print("\nPresets\n");
     for (const Json& preset : json["presets"]) fmt::print("  {}\n", preset.get<std::string>());
 }

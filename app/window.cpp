@@ -259,6 +259,10 @@ void Window::onStroke(GLFWwindow* window, int key, int modifiers) {
     case GLFW_KEY_3: struck.sideBySide = true; break;
     case GLFW_KEY_4: struck.errorMap = true; break;
     case GLFW_KEY_M: struck.tradeOff = true; break;
+    case GLFW_KEY_J: struck.motion = true; break;
+    case GLFW_KEY_P: struck.probe = true; break;
+    case GLFW_KEY_K: struck.freeze = true; break;
+    case GLFW_KEY_N: (modifiers & GLFW_MOD_SHIFT ? struck.runTo : struck.step) = true; break;
     default: break;
     }
 }
@@ -538,7 +542,7 @@ int runWindow(Session& session, glm::ivec2 size) {
     Window window(size);
     Renderer renderer;
     Gui gui(window);
-    const HiddenContext loadingContext(window.get()), measuringContext(nullptr);
+    const HiddenContext loadingContext(window.get()), measuringContext(nullptr), motionContext(nullptr);
     SceneLoader loader(loadingContext.makeCurrent());
     Settings settings = defaultSettings();
     std::string trouble;
@@ -551,6 +555,7 @@ int runWindow(Session& session, glm::ivec2 size) {
     TruthFiles truthFiles;
     Actions actions = actionsOn(session, renderer, window, settings, names, truthFiles);
     actions.measuringContext = measuringContext.makeCurrent();
+    actions.motionContext = motionContext.makeCurrent();
     Workspace workspace(session, renderer, loader, std::move(actions));
     if (!trouble.empty()) workspace.say(trouble);
     if (!gui.fit()) workspace.say("DejaVu Sans is not installed: Greek letters and signs show as '?'");

@@ -179,7 +179,7 @@ View sessionView(const Session& session, const Bounds& bounds) {
 }
 
 Frame buildFrame(Flow& flow, const Session& session, const SceneState& state, const Geometry* geometry,
-                 const LastFrame* last) {
+                 const LastFrame* last, const Inspection& inspection) {
     const Comparison& comparison = session.comparison;
     const bool two = comparison.against == Against::Technique;
     // One geometry buffer for all, as large as any of them wants it.
@@ -202,7 +202,8 @@ Frame buildFrame(Flow& flow, const Session& session, const SceneState& state, co
                         session.seed,
                         session.progressive,
                         margin,
-                        last};
+                        last,
+                        inspection};
     // Two techniques are instances a and b of one frame; what they need alike, such as the geometry buffer, is made
     // once.
     const bool lit = session.display.show == Show::Lit;

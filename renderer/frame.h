@@ -18,7 +18,7 @@ struct Frame {
 // Appends the passes of a session's frame to a flow that has begun. `geometry` may be null: the passes are listed all
 // the same. `last` is null in a first frame.
 Frame buildFrame(Flow& flow, const Session& session, const SceneState& state, const Geometry* geometry,
-                 const LastFrame* last);
+                 const LastFrame* last, const Inspection& inspection = {});
 
 // The view of a session: near and far planes hold the whole scene.
 View sessionView(const Session& session, const Bounds& bounds);

@@ -34,6 +34,13 @@ struct LastFrame {
     AreaLight light;
 };
 
+// What somebody looks into besides the picture, which is the same whether or not.
+struct Inspection {
+    bool images = false;             // techniques also write images that only explain
+    std::optional<glm::ivec2> probe; // a pixel of the picture, from its lower left corner, that is looked at closely
+    bool operator==(const Inspection&) const = default;
+};
+
 struct Inputs {
     const View& view; // of the geometry buffer: the picture with Technique::margin() around it
     const AreaLight& light;
@@ -46,6 +53,7 @@ struct Inputs {
     bool progressive = false;        // the frame may show a part of the work; later ones do the rest
     glm::ivec2 margin{0, 0};         // of the view [pixels]
     const LastFrame* last = nullptr; // null: this is the first
+    Inspection inspection = {};
 
     glm::ivec2 pictureSize() const { return view.size - 2 * margin; }
 };

@@ -63,15 +63,16 @@ std::unique_ptr<Renderer> Renderer::sibling(bool sharesScene) const {
 void Renderer::reset() {
     flow_.forget();
     if (drawn_) drawn_->state_.restart();
+    past_.reset();
     last_.reset();
 }
 
-void Renderer::render(const Session& session, Timing timing) {
-    begin(session, timing);
+void Renderer::render(const Session& session, Timing timing, Turn turn) {
+    begin(session, timing, turn);
     advance(std::numeric_limits<double>::infinity());
 }
 
-void Renderer::begin(const Session& session, Timing timing) {
+void Renderer::begin(const Session& session, Timing timing, Turn turn) {
     if (!drawn_ || drawn_->scene_ != session.scene) {
         if (!next_ || next_->scene_ != session.scene) next_.emplace(session.scene);
         drawn_ = std::move(next_);
@@ -79,15 +80,16 @@ void Renderer::begin(const Session& session, Timing timing) {
         reset();
     }
     SceneState& state = drawn_->state_;
-    state.update(session.clip, session.time, session.ground);
+    state.update(session.clip, session.time, session.ground, turn);
     drawn_->geometry_->update(state);
 
     view_ = sessionView(session, state.bounds());
-    flow_.begin();
+    if (turn == Turn::Next) past_ = last_;
+    flow_.begin(turn);
     try {
-        frame_ = buildFrame(flow_, session, state, drawn_->geometry_.get(), last_ ? &*last_ : nullptr);
+        frame_ = buildFrame(flow_, session, state, drawn_->geometry_.get(), past_ ? &*past_ : nullptr, inspection_);
         flow_.refuseAbove(session.textureLimit);
-        runner_.begin(flow_, timing);
+        runner_.begin(flow_, timing, turn);
     } catch (...) {
         fail();
         throw;

@@ -44,17 +44,20 @@ public:
     // Draws one frame of the session at session.size. Throws InputError, before anything is drawn, if it would hold
     // more textures than session.textureLimit or one that the driver cannot have. There is no frame to look at then,
     // and the next one is a first one.
-    void render(const Session& session, Timing timing = Timing::Off);
+    void render(const Session& session, Timing timing = Timing::Off, Turn turn = Turn::Next);
     // The same in parts, for those who must not be kept waiting: begin() takes over what the session says now, and each
     // advance() goes on for about so long; true when the frame is finished. Until then the images are partly those of
     // the frame before, but picture() is whole.
-    void begin(const Session& session, Timing timing);
+    void begin(const Session& session, Timing timing, Turn turn = Turn::Next);
     bool advance(double milliseconds);
     bool underWay() const { return runner_.underWay(); }
     // The next session that shows this scene finds it ready; a scene that nobody prepared is prepared by render().
     void take(PreparedScene prepared) { next_ = std::move(prepared); }
     // Drops all history: the next frame is the first.
     void reset();
+    // What the next frames are looked into for.
+    void inspect(const Inspection& inspection) { inspection_ = inspection; }
+    const Inspection& inspection() const { return inspection_; }
 
     const Flow& flow() const { return flow_; }
     const FlowRunner& runner() const { return runner_; }
@@ -104,8 +107,9 @@ private:
     std::optional<PreparedScene> drawn_, next_;
     std::optional<Frame> frame_;
     std::shared_ptr<const Texture> picture_;
-    View view_; // of the frame
-    std::optional<LastFrame> last_;
+    View view_;                            // of the frame
+    std::optional<LastFrame> past_, last_; // that the frame was built on; that the next one will be
+    Inspection inspection_;
     bool software_ = false;
 };
 

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "ui/buffer_view.h"
 
+#include "ui/colours.h"
+
 #include <algorithm>
 #include <chrono>
 #include <cmath>
@@ -22,6 +24,19 @@ constexpr std::string_view markNames[] = {"NaN", "Infinite", "Negative", "Out of
 const Channel* channelOf(const ImageSpec& spec, int channel) {
     const size_t index = static_cast<size_t>(channel);
     return channel >= 0 && index < spec.channels.size() ? &spec.channels[index] : nullptr;
+}
+
+// What whole numbers of a channel stand for, or nothing.
+std::span<const std::string_view> kindsOf(const ImageSpec& spec, int channel) {
+    const Channel* known = channelOf(spec, channel);
+    return known ? known->names : std::span<const std::string_view>();
+}
+
+std::string_view kindOf(const ImageSpec& spec, int channel, float value) {
+    const auto kinds = kindsOf(spec, channel);
+    const float number = std::round(value);
+    return number >= 0 && number < static_cast<float>(kinds.size()) ? kinds[static_cast<size_t>(number)]
+                                                                    : std::string_view();
 }
 
 std::string_view unitOf(const ImageSpec& spec, int channel) {
@@ -74,6 +89,7 @@ Look firstLook(const ImageSpec& spec) {
         look.range = {spec.channels[0].min, spec.channels[0].max};
         look.marks |= bit(Mark::OutOfRange);
     }
+    if (!kindsOf(spec, look.channel).empty()) look.map = ColourMap::Flags;
     return look;
 }
 
@@ -108,6 +124,10 @@ bool BufferView::update(const Renderer& renderer, Inspector& inspector, uint64_t
         texture_ = image ? &renderer.runner().texture(renderer.flow(), *image) : nullptr;
         if (!texture_) return false;
         spec_ = renderer.flow().spec(*image);
+        // What is as large as the geometry buffer shows what it does.
+        const Extent& geometry = renderer.flow().spec(renderer.depth()).extent;
+        margin_ =
+            spec_.extent == geometry ? (ivec2(geometry.width, geometry.height) - renderer.view().size) / 2 : ivec2(0);
     }
     const Extent& extent = spec_.extent;
     layer_ = std::min(layer_, extent.layers - 1);
@@ -236,6 +256,7 @@ BufferView::Events BufferView::draw(Inspector& inspector, ImVec2 size, float pix
         list.PushClipRect(corner, {corner.x + area.x, corner.y + area.y}, true);
         list.AddImage(textureId(painting_.name()), corner, {corner.x + area.x, corner.y + area.y});
         if (unitsPerTexel >= texelForValues * ImGui::GetFontSize()) printValues(inspector, corner, area, unitsPerTexel);
+        if (margin_ != ivec2(0)) drawPictureEdge(corner, unitsPerTexel);
         if (pointed_ && !events.pointedAt) drawPlace(corner, *pointed_, unitsPerTexel, IM_COL32_WHITE);
         if (pin_) drawPlace(corner, pin_->texel, unitsPerTexel, ImGui::GetColorU32(colour::accent));
         list.PopClipRect();
@@ -333,6 +354,19 @@ void BufferView::printValues(Inspector& inspector, ImVec2 corner, ImVec2 size, d
         }
 }
 
+// Where the picture ends and what a technique wants to know beyond it begins.
+void BufferView::drawPictureEdge(ImVec2 corner, double unitsPerTexel) const {
+    const auto at = [&](ivec2 texel) {
+        return ImVec2(corner.x + static_cast<float>((texel.x - window_.left) * unitsPerTexel),
+                      corner.y + static_cast<float>((texel.y - window_.top) * unitsPerTexel));
+    };
+    const float width = 0.09f * ImGui::GetFontSize();
+    const ImVec2 low = at(margin_), high = at(source().size() - margin_);
+    ImDrawList& list = *ImGui::GetWindowDrawList();
+    list.AddRect(low, high, IM_COL32(0, 0, 0, 160), 0, 0, 3 * width);
+    list.AddRect(low, high, IM_COL32(255, 255, 255, 220), 0, 0, width);
+}
+
 void BufferView::drawPlace(ImVec2 corner, ivec2 texel, double unitsPerTexel, ImU32 ink) const {
     const float em = ImGui::GetFontSize(), half = std::max(static_cast<float>(unitsPerTexel) / 2, 0.3f * em);
     const ImVec2 middle(corner.x + static_cast<float>((texel.x + 0.5 - window_.left) * unitsPerTexel),
@@ -353,8 +387,10 @@ void BufferView::caption(std::optional<ivec2> texel, float width, bool chosen) {
         const int first = std::max(look_.channel, 0);
         const float* v = underPointer_.values.data() + first;
         const std::string_view unit = unitOf(spec_, first);
-        const ShortText number =
-            look_.channel < 0 ? ShortText("{:.4g}  {:.4g}  {:.4g}", v[0], v[1], v[2]) : valueText(*v, unit);
+        const std::string_view kind = kindOf(spec_, look_.channel, *v);
+        const ShortText number = !kind.empty()       ? ShortText("{:g}  {}", *v, kind)
+                                 : look_.channel < 0 ? ShortText("{:.4g}  {:.4g}  {:.4g}", v[0], v[1], v[2])
+                                                     : valueText(*v, unit);
         const ShortText line("{}, {}   {}", texel->x, texel->y, number.view());
         const auto widthOf = [](std::string_view words) {
             return ImGui::CalcTextSize(words.data(), words.data() + words.size()).x;
@@ -383,6 +419,9 @@ std::optional<BufferShot> BufferView::drawControls(Inspector& inspector, Sight& 
                                          extent.samples > 1 ? ShortText(", {} samples", extent.samples).view() : "",
                                          info(spec_.format).name, bytesText(spec_.bytes()).view())
                                    .view());
+    if (margin_ != ivec2(0))
+        wrappedText(colour::muted,
+                    ShortText("{} and {} texels beyond the picture, which is framed", margin_.x, margin_.y).view());
     const std::optional<BufferShot> shot = keepRow(inspector, sight);
     imageRows();
     rangeRows(inspector);
@@ -422,7 +461,39 @@ void BufferView::imageRows() {
     whole("Sample", "##sample", sample_, extent.samples, "Which of a texel's samples");
     if (look_.channel != before.channel) {
         mode_ = hasStatedRange(spec_, look_.channel) ? RangeMode::Stated : RangeMode::Automatic;
+        const bool kinds = !kindsOf(spec_, look_.channel).empty();
+        if (kinds || !kindsOf(spec_, before.channel).empty()) look_.map = kinds ? ColourMap::Flags : ColourMap::Grey;
         measured_.reset();
+    }
+}
+
+// The colours of a channel's kinds, and which share of the texels is of each.
+void BufferView::kindRows() const {
+    const auto kinds = kindsOf(spec_, look_.channel);
+    if (kinds.empty() || look_.map != ColourMap::Flags) return;
+    const ValueRange& domain = statistics_.domain;
+    const auto bins = statistics_.bins(0);
+    const float side = 0.75f * ImGui::GetFontSize();
+    for (size_t kind = 0; kind < kinds.size(); ++kind) {
+        uint64_t count = 0;
+        for (size_t i = 0; i < bins.size(); ++i) {
+            const double t = (static_cast<double>(i) + 0.5) / static_cast<double>(bins.size());
+            if (std::lround(std::lerp(double{domain.min}, double{domain.max}, t)) == static_cast<long>(kind))
+                count += bins[i];
+        }
+        const ImVec2 at = ImGui::GetCursorScreenPos();
+        const float top = at.y + (ImGui::GetTextLineHeight() - side) / 2;
+        ImGui::GetWindowDrawList()->AddRectFilled({at.x, top}, {at.x + side, top + side},
+                                                  flagColour(static_cast<int>(kind)), 0.15f * side);
+        ImGui::Dummy({side, side});
+        ImGui::SameLine();
+        text(count > 0 ? colour::text : colour::muted, kinds[kind]);
+        if (count == 0) continue;
+        ImGui::SameLine();
+        ImGui::PushStyleColor(ImGuiCol_Text, colour::muted);
+        rightText(ShortText("{:.2g} %", 100.0 * static_cast<double>(count) / std::max(statistics_.measured.looked, 1u))
+                      .view());
+        ImGui::PopStyleColor();
     }
 }
 
@@ -441,6 +512,7 @@ void BufferView::rangeRows(Inspector& inspector) {
     ImGui::EndDisabled();
     tooltip(together ? "Three channels together are red, green and blue." : colourMapHelp[map]);
 
+    kindRows();
     ValueRange edited = look_.range;
     bool typed = histogram_.draw(inspector, statistics_, look_, spec_.channels, edited);
     const float gap = ImGui::GetStyle().ItemInnerSpacing.x;

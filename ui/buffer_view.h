@@ -97,10 +97,12 @@ private:
     void navigate(Sight& sight, Events& events, ImVec2 corner, ImVec2 size, double unitsPerTexel);
     void paint(Inspector& inspector, ImVec2 size, float pixelsPerUnit);
     void printValues(Inspector& inspector, ImVec2 corner, ImVec2 size, double unitsPerTexel);
+    void drawPictureEdge(ImVec2 corner, double unitsPerTexel) const;
     void drawPlace(ImVec2 corner, glm::ivec2 texel, double unitsPerTexel, ImU32 ink) const;
     void caption(std::optional<glm::ivec2> texel, float width, bool chosen);
 
     void imageRows();
+    void kindRows() const;
     void rangeRows(Inspector& inspector);
     void markRows(Sight& sight);
     void valueTable();
@@ -111,6 +113,7 @@ private:
 
     std::string label_;
     ImageSpec spec_;
+    glm::ivec2 margin_{0};             // texels beyond each edge of the picture
     const Texture* texture_ = nullptr; // of this frame; null: the image is not there
     std::optional<Frozen> frozen_;
     bool freeze_ = false;

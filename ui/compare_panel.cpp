@@ -1,28 +1,14 @@
 // SPDX-License-Identifier: MIT
 #include "ui/compare_panel.h"
 
+#include "ui/colours.h"
+
 #include <algorithm>
 #include <cmath>
 
 namespace penumbra {
 
 namespace {
-
-#pragma GCC diagnostic push
-#pragma GCC diagnostic ignored "-Wunused-function" // what only the GPU calls
-namespace glsl {
-using glm::abs;
-using glm::floor;
-using glm::fract;
-using glm::max;
-using glm::min;
-using glm::pow;
-using glm::vec3;
-#include "shaders/lib/srgb.glsl"
-
-#include "shaders/lib/colour_map.glsl" // needs the one above
-} // namespace glsl
-#pragma GCC diagnostic pop
 
 constexpr float numbersWidth = 17, twoNumbersWidth = 22; // font heights
 constexpr float smallView = 28;                          // font heights
@@ -59,10 +45,7 @@ void legend(ImVec2 corner, float gain) {
     const ImVec2 at{corner.x + pad, corner.y + pad};
     constexpr int steps = 32;
     for (int i = 0; i < steps; ++i) {
-        const auto colourAt = [&](int k) {
-            const glm::vec3 c = glsl::diverging(2.0f * static_cast<float>(k) / steps - 1);
-            return ImGui::GetColorU32(ImVec4(c.r, c.g, c.b, 1));
-        };
+        const auto colourAt = [&](int k) { return divergingColour(2.0f * static_cast<float>(k) / steps - 1); };
         const auto x = [&](int k) { return at.x + width * static_cast<float>(k) / steps; };
         const ImU32 left = colourAt(i), right = colourAt(i + 1);
         list.AddRectFilledMultiColor({x(i), at.y}, {x(i + 1), at.y + height}, left, right, right, left);

@@ -28,6 +28,11 @@ struct Keys {
     bool buffers = false;       // B
     bool timings = false;       // T
     bool tradeOff = false;      // M
+    bool motion = false;        // J
+    bool probe = false;         // P
+    bool freeze = false;        // K
+    bool step = false;          // N
+    bool runTo = false;         // Shift+N
     bool truth = false;         // Y
     bool ruler = false;         // U
     bool exchange = false;      // X
@@ -71,6 +76,11 @@ inline constexpr KeyHelp keyHelp[] = {
     {"X", "A and B change places"},
     {"Y", "trace the truth, show the errors"},
     {"U", "penumbra ruler: drag its ends across a shadow's edge"},
+    {"Techniques with a history", ""},
+    {"K", "freeze it, let it go on; frozen, all else can be changed and is drawn with the same past"},
+    {"N,  Shift + N", "one frame; up to the number of frames beside Run to; then it is frozen"},
+    {"R", "restart: forget all history"},
+    {"P,  click", "probe: a pixel's numbers over the frames; right click lets it go"},
     {"Images, in the buffers", ""},
     {"wheel, left drag", "zoom, move"},
     {"click, right click", "pin a texel, let it go"},
@@ -78,9 +88,8 @@ inline constexpr KeyHelp keyHelp[] = {
     {"Ctrl + click, double click", "type a number"},
     {"Window", ""},
     {"V", "lit picture or shadow ψ"},
-    {"R", "restart: forget all history"},
     {"Space", "play or pause the animation"},
-    {"B,  T,  M", "buffers, timings, trade-off of cost and error"},
+    {"B,  T,  M,  J", "buffers, timings, trade-off of cost and error, motion"},
     {"Ctrl + O", "open a scene"},
     {"F12,  Shift + F12", "save a picture of the view, of the whole window"},
     {"Ctrl + plus, minus, 0", "larger or smaller text, as at first"},

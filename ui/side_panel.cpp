@@ -8,7 +8,8 @@
 
 namespace penumbra {
 
-Requests SidePanel::draw(Session& session, const SceneFacts& facts, Playback& playback, ViewSettings& view) {
+Requests SidePanel::draw(Session& session, const SceneFacts& facts, Playback& playback, ViewSettings& view,
+                         HistoryControl& history, int historyLength) {
     Requests requests;
     if (section("Scene", true)) {
         ImGui::PushID("scene");
@@ -20,6 +21,7 @@ Requests SidePanel::draw(Session& session, const SceneFacts& facts, Playback& pl
     if (section("Technique", true)) {
         if (two) chooseEdited(session);
         technique(shelf(session), requests);
+        historyControls(history, historyLength, requests);
     }
     if (section("Parameters", true)) parameters_.draw(shelf(session).parameters());
     if (section("Presets", false)) {
@@ -204,8 +206,33 @@ void SidePanel::technique(TechniqueShelf& shelf, Requests& requests) {
         }
         ImGui::TreePop();
     }
+}
+
+void SidePanel::historyControls(HistoryControl& history, int length, Requests& requests) {
+    constexpr const char* none = "This technique keeps nothing from frame to frame: there is no history to hold still.";
+    const float gap = ImGui::GetStyle().ItemInnerSpacing.x, padding = 2 * ImGui::GetStyle().FramePadding.x;
     if (ImGui::Button("Restart")) requests.restart = true;
     tooltip("Forget all history and start again at the first frame (R)");
+    ImGui::BeginDisabled(length == 0);
+    ImGui::SameLine(0, gap);
+    if (toggleButton("Freeze", history.frozen())) history.freeze(!history.frozen());
+    tooltip(length == 0 ? none
+                        : "Hold the history still, or let it go on (K). What else is changed meanwhile is drawn with "
+                          "the same past.");
+    ImGui::SameLine(0, gap);
+    if (ImGui::Button("Step")) history.step();
+    tooltip(length == 0 ? none : "One frame more (N). An animation that plays goes on by 1/60 s.");
+    ImGui::SameLine(0, gap);
+    if (ImGui::Button("Run to")) requests.restart = history.runToTarget(length) || requests.restart;
+    tooltip(length == 0 ? none
+                        : "Go on until the history is of so many frames, or start anew if it is longer, then freeze "
+                          "(Shift + N)");
+    ImGui::SameLine(0, gap);
+    ImGui::SetNextItemWidth(ImGui::CalcTextSize("9999").x + padding);
+    ImGui::DragInt("##frames", &history.target, 0.25f, 1, HistoryControl::mostFrames, "%d",
+                   ImGuiSliderFlags_AlwaysClamp);
+    tooltip(length == 0 ? none : "Frames of the history. Drag, or Ctrl + click to type.");
+    ImGui::EndDisabled();
 }
 
 void SidePanel::takePreset(const TechniqueShelf& techniques, std::string_view name) {
@@ -233,9 +260,9 @@ void SidePanel::presets(const Session& session, Requests& requests) {
 
     row("Preset");
     if (changed) ImGui::PushStyleColor(ImGuiCol_Text, colour::accent);
-    const bool open = beginCombo(
-        "##presets", chosen ? ShortText("{}{}", preset_, changed ? ", changed" : "").begin() : "choose…",
-        ImGuiComboFlags_HeightLarge);
+    const bool open =
+        beginCombo("##presets", chosen ? ShortText("{}{}", preset_, changed ? ", changed" : "").begin() : "choose…",
+                   ImGuiComboFlags_HeightLarge);
     if (changed) ImGui::PopStyleColor();
     if (open) {
         requests.listPresets = ImGui::IsWindowAppearing();

@@ -3,6 +3,7 @@
 #pragma once
 
 #include "ui/camera_panel.h"
+#include "ui/history_control.h"
 #include "ui/light_panel.h"
 #include "ui/parameter_panel.h"
 #include "ui/scene_facts.h"
@@ -47,7 +48,9 @@ struct Requests {
 class SidePanel {
 public:
     // Draws into the current ImGui window.
-    Requests draw(Session& session, const SceneFacts& facts, Playback& playback, ViewSettings& view);
+    // `historyLength`: of the frame that is shown; 0: its techniques keep none.
+    Requests draw(Session& session, const SceneFacts& facts, Playback& playback, ViewSettings& view,
+                  HistoryControl& history, int historyLength);
 
     void setPresetNames(PresetNames names) { presetNames_ = std::move(names); }
     // The values are now those of this preset of the chosen technique; an empty name: of none.
@@ -62,6 +65,7 @@ private:
     TechniqueShelf& shelf(Session& session) const; // of the technique that is edited
     void chooseEdited(Session& session);
     void technique(TechniqueShelf& shelf, Requests& requests);
+    void historyControls(HistoryControl& history, int length, Requests& requests);
     void presets(const Session& session, Requests& requests);
 
     bool editsRival_ = false; // technique B, while there is one

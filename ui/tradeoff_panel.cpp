@@ -3,6 +3,7 @@
 
 #include "renderer/core/csv.h"
 #include "renderer/core/hash.h"
+#include "ui/plot.h"
 
 #include <algorithm>
 #include <cmath>
@@ -21,18 +22,6 @@ ImVec4 colourOf(const Card* card) {
     ImGui::ColorConvertHSVtoRGB(std::fmod(0.58f + 0.381966f * place, 1.0f), 0.5f, 0.95f, colour.x, colour.y, colour.z);
     return colour;
 }
-
-ImU32 faded(ImVec4 colour, float opacity) {
-    colour.w = opacity;
-    return ImGui::GetColorU32(colour);
-}
-
-ShortText tickText(double value) {
-    return value != 0 && (std::abs(value) < 1e-3 || std::abs(value) >= 1e5) ? ShortText("{:.0e}", value)
-                                                                            : ShortText("{:g}", value);
-}
-
-float widthOf(std::string_view line) { return ImGui::CalcTextSize(line.data(), line.data() + line.size()).x; }
 
 TruthSettings besideWindow(TruthCache* cache) { return {.background = true, .cache = cache}; }
 
@@ -205,8 +194,9 @@ void TradeOffPanel::search(const Session& session, uint64_t view) {
 
 // --- the panel -----------------------------------------------------------------------------------------------------
 
-TradeOffPanel::Requests TradeOffPanel::draw(Session& session, bool clean) {
+TradeOffPanel::Requests TradeOffPanel::draw(Session& session, bool clean, bool busy) {
     Requests requests;
+    busy_ = busy;
     view_ = viewOf(session);
     arrange();
     const float em = ImGui::GetFontSize();
@@ -228,11 +218,17 @@ void TradeOffPanel::chart(Session& session, ImVec2 size, bool clean, Requests& r
     const bool hovered = ImGui::IsItemHovered() && !clean, clicked = ImGui::IsItemClicked();
     ImDrawList& list = *ImGui::GetWindowDrawList();
     const ImVec2 end{corner_.x + size.x, corner_.y + size.y};
-    list.AddRectFilled(corner_, end, ImGui::GetColorU32(ImGuiCol_FrameBg), 0.25f * em);
-    const ImVec2 from{corner_.x + 4.4f * em, corner_.y + 1.9f * em}, to{end.x - em, end.y - 2.9f * em};
-    if (to.x - from.x < 4 * em || to.y - from.y < 3 * em) return;
+    const Plot plot{corner_,
+                    size,
+                    costAxis_,
+                    errorAxis_,
+                    "Cost: map + prefilter + resolve  [ms]",
+                    error_ == Error::All ? "Error: RMSE of ψ, all pixels" : "Error: RMSE of ψ, penumbrae"};
+    plot.drawPaper();
+    if (!plot.drawable()) return;
+    const ImVec2 from{plot.low().x, plot.high().y}, to{plot.high().x, plot.low().y};
     list.PushClipRect(corner_, end, true);
-    if (!shown_.empty() || !elsewhere_.empty()) axes(from, to);
+    if (!shown_.empty() || !elsewhere_.empty()) plot.drawAxes();
     dots(session, from, to);
 
     pointed_.reset();
@@ -262,32 +258,6 @@ void TradeOffPanel::chart(Session& session, ImVec2 size, bool clean, Requests& r
         session.techniques.take(point.setting.parameters());
         requests.restart = true;
     }
-}
-
-void TradeOffPanel::axes(ImVec2 from, ImVec2 to) const {
-    ImDrawList& list = *ImGui::GetWindowDrawList();
-    const float em = ImGui::GetFontSize(), gap = 0.35f * em;
-    const ImU32 grid = faded(colour::text, 0.09f), ink = ImGui::GetColorU32(colour::muted);
-    for (const double tick : ticksOf(costAxis_, static_cast<int>((to.x - from.x) / (4 * em)))) {
-        const float x = std::round(std::lerp(from.x, to.x, static_cast<float>(costAxis_.position(tick))));
-        list.AddLine({x, from.y}, {x, to.y}, grid);
-        const ShortText label = tickText(tick);
-        list.AddText({x - widthOf(label.view()) / 2, to.y + gap}, ink, label.begin(), label.end());
-    }
-    for (const double tick : ticksOf(errorAxis_, static_cast<int>((to.y - from.y) / (2 * em)))) {
-        const float y = std::round(std::lerp(to.y, from.y, static_cast<float>(errorAxis_.position(tick))));
-        list.AddLine({from.x, y}, {to.x, y}, grid);
-        const ShortText label = tickText(tick);
-        list.AddText({from.x - widthOf(label.view()) - gap, y - ImGui::GetTextLineHeight() / 2}, ink, label.begin(),
-                     label.end());
-    }
-    list.AddLine({from.x, from.y}, {from.x, to.y}, ink);
-    list.AddLine({from.x, to.y}, {to.x, to.y}, ink);
-    const ImU32 bright = ImGui::GetColorU32(colour::text);
-    const char* up = error_ == Error::All ? "Error: RMSE of ψ, all pixels" : "Error: RMSE of ψ, penumbrae";
-    list.AddText({corner_.x + 0.6f * em, corner_.y + 0.3f * em}, bright, up);
-    const char* across = "Cost: map + prefilter + resolve  [ms]";
-    list.AddText({to.x - ImGui::CalcTextSize(across).x, corner_.y + size_.y - 1.35f * em}, bright, across);
 }
 
 void TradeOffPanel::dots(const Session& session, ImVec2 from, ImVec2 to) {
@@ -346,7 +316,8 @@ void TradeOffPanel::dots(const Session& session, ImVec2 from, ImVec2 to) {
         }
     if (found_ && found_->proposal)
         for (const Dot& dot : dots_)
-            if (dot.here && points_[dot.point].setting.parameters() == found_->trials[*found_->proposal].setting.parameters())
+            if (dot.here &&
+                points_[dot.point].setting.parameters() == found_->trials[*found_->proposal].setting.parameters())
                 list.AddCircle(dot.place, 0.78f * em, ImGui::GetColorU32(colour::warning), 0, 0.14f * em);
 }
 
@@ -360,8 +331,8 @@ void TradeOffPanel::names(ImVec2 from, ImVec2 to) const {
     };
     for (const Dot& dot : dots_)
         if (dot.current && taken.size() < 32)
-            taken.push_back({dot.place.x - 0.4f * em, dot.place.y - 0.4f * em, dot.place.x + 0.4f * em,
-                             dot.place.y + 0.4f * em});
+            taken.push_back(
+                {dot.place.x - 0.4f * em, dot.place.y - 0.4f * em, dot.place.x + 0.4f * em, dot.place.y + 0.4f * em});
     for (const Dot& dot : dots_) {
         if (!dot.current) continue;
         const Card& card = *points_[dot.point].setting.card;
@@ -433,9 +404,13 @@ void TradeOffPanel::controls(Session& session, Requests& requests) {
     if (measuring()) {
         progress();
     } else {
+        ImGui::BeginDisabled(busy_);
         if (ImGui::Button("Measure all", {-FLT_MIN, 0})) measureAll(session, view_);
-        tooltip("Measure the cost and the error of every technique with its present values, in the present view, "
-                "against traced rays");
+        ImGui::EndDisabled();
+        tooltip(busy_
+                    ? "A motion is being measured."
+                    : "Measure the cost and the error of every technique with its present values, in the present view, "
+                      "against traced rays");
         if (!elsewhere_.empty())
             text(colour::muted,
                  ShortText("{} measured; rings: {} in other views", shown_.size(), elsewhere_.size()).view());
@@ -505,15 +480,17 @@ void TradeOffPanel::budgetForm(Session& session, Requests& requests) {
         if (ImGui::SmallButton("×")) views_.clear(), viewHashes_.clear();
         tooltip("Forget them: search in the present view");
     }
-    const bool ready = !measuring() && techniques > 0 &&
+    const bool ready = !measuring() && !busy_ && techniques > 0 &&
                        std::any_of(free_.begin(), free_.end(), [&](const FreeParameter& f) {
                            return !left_.contains(f.name.substr(0, f.name.find('.')));
                        });
     ImGui::BeginDisabled(!ready);
     if (ImGui::Button("Search", {-FLT_MIN, 0})) search(session, view_);
     ImGui::EndDisabled();
-    tooltip(!ready && !measuring() ? "Mark at least one parameter as free"
-                          : "A coarse grid of the free parameters, then smaller and smaller steps from the best of it");
+    tooltip(busy_ ? "A motion is being measured."
+            : !ready && !measuring()
+                ? "Mark at least one parameter as free"
+                : "A coarse grid of the free parameters, then smaller and smaller steps from the best of it");
     proposal(session, requests);
 }
 
@@ -580,8 +557,8 @@ void TradeOffPanel::freeRow(const Parameter& parameter) {
 void TradeOffPanel::proposal(Session& session, Requests& requests) {
     if (!found_) return;
     if (!found_->proposal) {
-        wrappedText(colour::warning, ShortText("None of {} settings that were tried keeps the budget.",
-                                               found_->trials.size()).view());
+        wrappedText(colour::warning,
+                    ShortText("None of {} settings that were tried keeps the budget.", found_->trials.size()).view());
         if (ImGui::Button("Dismiss")) found_.reset(), several_.reset();
         return;
     }
@@ -620,13 +597,13 @@ std::string TradeOffPanel::csv(const Session& session, std::string_view driver) 
         std::string parameters;
         for (const Parameter* parameter : point.setting.parameters().all())
             if (parameter->changed())
-                parameters += fmt::format("{}{}={}", parameters.empty() ? "" : "; ", parameter->spec().id,
-                                          parameter->text());
+                parameters +=
+                    fmt::format("{}{}={}", parameters.empty() ? "" : "; ", parameter->spec().id, parameter->text());
         const bool front = std::find(frontLine_.begin(), frontLine_.end(), i) != frontLine_.end();
-        const std::string cost =
-            point.cost.count == 0 ? ",,,0"
-                                  : fmt::format("{:.6g},{:.6g},{:.6g},{}", point.cost.median, point.cost.interval.low,
-                                                point.cost.interval.high, point.cost.count);
+        const std::string cost = point.cost.count == 0
+                                     ? ",,,0"
+                                     : fmt::format("{:.6g},{:.6g},{:.6g},{}", point.cost.median,
+                                                   point.cost.interval.low, point.cost.interval.high, point.cost.count);
         table += fmt::format("{},{},{},{:.6g},{:.6g},{},{},{},{},{},{},{},{:016x},{}\n", point.setting.card->id,
                              csvField(parameters), cost, point.rmse, point.penumbraRmse, point.bytes, point.maps,
                              isCurrent(point, session), front, csvField(point.scene), point.size.x, point.size.y,

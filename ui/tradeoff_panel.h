@@ -21,7 +21,7 @@ struct MeasuredPoint {
     uint64_t view;
     std::string scene;
     glm::ivec2 size;
-    TimeSummary cost;  // [ms]; count 0: not known
+    TimeSummary cost; // [ms]; count 0: not known
     double rmse, penumbraRmse;
     uint64_t bytes = 0;
     int maps = 0;
@@ -39,8 +39,9 @@ public:
         bool restart = false;     // the technique or its values are others
         std::string trouble = {}; // bad input, for a dialog
     };
-    // Draws into the current ImGui window. `clean`: without what a hand or a pointer brings up, for a picture.
-    Requests draw(Session& session, bool clean);
+    // Draws into the current ImGui window. `clean`: without what a hand or a pointer brings up, for a picture. `busy`:
+    // something else is measured, which would disturb this.
+    Requests draw(Session& session, bool clean, bool busy);
     // Takes in what was measured meanwhile; call it every frame, whether the panel is drawn or not. A line to say, or
     // nothing.
     std::string poll();
@@ -70,7 +71,6 @@ private:
     void search(const Session& session, uint64_t view);
 
     void chart(Session& session, ImVec2 size, bool clean, Requests& requests);
-    void axes(ImVec2 from, ImVec2 to) const;
     void dots(const Session& session, ImVec2 from, ImVec2 to);
     void names(ImVec2 from, ImVec2 to) const;
     void describe(const MeasuredPoint& point) const;
@@ -105,13 +105,14 @@ private:
     ImVec2 corner_{0, 0}, size_{0, 0};
     std::optional<size_t> pointed_; // among the points
 
+    bool busy_ = false;
     Error error_ = Error::All;
     bool logCost_ = true, logError_ = false;
     Bound bound_ = Bound::Cost;
     float mostMilliseconds_ = 5, mostError_ = 0.05f;
-    std::vector<FreeParameter> free_;   // by qualified name, with both ends of their ranges
-    std::set<std::string> left_;        // techniques that are left out
-    std::vector<Session> views_;        // kept for searches
+    std::vector<FreeParameter> free_; // by qualified name, with both ends of their ranges
+    std::set<std::string> left_;      // techniques that are left out
+    std::vector<Session> views_;      // kept for searches
     std::vector<uint64_t> viewHashes_;
     Budget asked_;
     std::optional<BudgetSearch> found_; // and neither applied nor dismissed yet

@@ -102,7 +102,7 @@ ShortText handleText(LightHandle handle, const AreaLight& light, bool held) {
 float Viewport::unit() const { return std::max(ImGui::GetFontSize(), 1.0f) / 15; }
 
 void Viewport::draw(Session& session, Renderer& renderer, const SceneFacts& facts, const Keys& keys,
-                    ViewSettings& settings, Timing timing, bool always, float pixelsPerUnit) {
+                    ViewSettings& settings, HistoryControl& history, Timing timing, bool always, float pixelsPerUnit) {
     renderedNow_ = false;
     const ImVec2 corner = ImGui::GetCursorScreenPos(), size = ImGui::GetContentRegionAvail();
     const glm::ivec2 pixels(std::lround(size.x * pixelsPerUnit), std::lround(size.y * pixelsPerUnit));
@@ -117,9 +117,10 @@ void Viewport::draw(Session& session, Renderer& renderer, const SceneFacts& fact
         pane_ = panes > 1 && ImGui::GetIO().MousePos.x >= corner.x + pane.x ? 1 : 0;
     const auto paneCorner = [&](int i) { return vec(corner) + glm::vec2(static_cast<float>(i) * pane.x, 0); };
     screen_ = {sessionView(session, facts.boundsWorld), paneCorner(pane_), pane};
+    click();
     navigate(session, facts, keys, settings);
     const std::vector<std::string>& shaderErrors = renderer.pollShaders();
-    render(session, renderer, timing, always);
+    render(session, renderer, history, timing, always);
     if (point_ && upToDate()) takePoint(session, renderer, facts.size);
     if (const Texture* picture = renderer.picture()) {
         // Of two pictures side by side the second may still be missing.
@@ -184,6 +185,24 @@ Motion Viewport::ofKeys(const Keys& keys, const ViewSettings& settings, float sc
         motion.fly = settings.flySpeed * sceneSize * (keys.shift ? sprint : 1.0f) *
                      glm::vec3(keys.right - keys.left, keys.rise - keys.sink, keys.forward - keys.back);
     return motion;
+}
+
+// What of the mouse is no drag.
+void Viewport::click() {
+    const ImGuiIO& io = ImGui::GetIO();
+    clicked_.reset();
+    pointed_.reset();
+    rightClicked_ = false;
+    if (!ImGui::IsItemHovered()) return;
+    pointed_ = glm::clamp((vec(io.MousePos) - screen_.corner) / screen_.size, 0.0f, 1.0f);
+    if (!ImGui::IsItemDeactivated()) return;
+    const auto still = [&](ImGuiMouseButton button) {
+        return ImGui::IsMouseReleased(button) &&
+               io.MouseDragMaxDistanceSqr[button] <= io.MouseDragThreshold * io.MouseDragThreshold;
+    };
+    const bool plain = drag_ == Drag::None || drag_ == Drag::Orbit || drag_ == Drag::Look;
+    if (plain && still(ImGuiMouseButton_Left)) clicked_ = pointed_;
+    rightClicked_ = plain && still(ImGuiMouseButton_Right);
 }
 
 // A button went down in the view.
@@ -312,9 +331,11 @@ void Viewport::fingerprint(const Session& session, const Renderer& renderer) {
         for (const Parameter* parameter : session.rival.parameters().all()) now_.push_back(parameter->bits());
     }
     now_.push_back(session.ground);
+    now_.push_back(renderer.inspection().images);
+    append(now_, renderer.inspection().probe.value_or(glm::ivec2(-1)));
 }
 
-void Viewport::render(Session& session, Renderer& renderer, Timing timing, bool always) {
+void Viewport::render(Session& session, Renderer& renderer, HistoryControl& history, Timing timing, bool always) {
     fingerprint(session, renderer);
     try {
         if (!renderer.underWay()) {
@@ -323,8 +344,10 @@ void Viewport::render(Session& session, Renderer& renderer, Timing timing, bool 
             const bool settling =
                 frames_ < settledFrame_ && renderer.runner().timer().newest().milliseconds < dearFrame;
             // After a failure only a change can help.
+            turn_ = history.next();
+            const bool goesOn = turn_ == Turn::Next && (history.counting() || renderer.flow().living());
             const bool living =
-                trouble_.empty() && !resting_ && (always || settling || session.timeStep != 0 || renderer.flow().living());
+                trouble_.empty() && !resting_ && (always || settling || session.timeStep != 0 || goesOn);
             if (!changed && !living) return;
             if (restart_) {
                 renderer.reset();
@@ -334,11 +357,14 @@ void Viewport::render(Session& session, Renderer& renderer, Timing timing, bool 
             if (changed) settledFrame_ = frames_ + framesToSettle;
             drawn_ = now_;
             trouble_.clear();
-            renderer.begin(session, timing);
-            ++session.frame;
+            renderer.begin(session, timing, turn_);
+            if (turn_ == Turn::Next) ++session.frame;
         }
         renderedNow_ = renderer.advance(shareOfFrame);
-        if (renderedNow_) ++frames_;
+        if (renderedNow_) {
+            ++frames_;
+            history.finished(turn_, renderer.flow().historyLength());
+        }
     } catch (const std::exception& error) { // too large, or a shader that never compiled: only a change can help
         trouble_ = error.what();
     }

@@ -2,6 +2,7 @@
 // The picture in the window: renders the session when there is something new to see and takes mouse and keys.
 #pragma once
 
+#include "ui/history_control.h"
 #include "ui/keys.h"
 #include "ui/light_gizmo.h"
 #include "ui/navigation.h"
@@ -21,7 +22,7 @@ public:
     // last frame or the technique keeps history, and shows the result. A dear frame takes several calls; the one before
     // is shown meanwhile. `pixelsPerUnit` is the framebuffer's scale.
     void draw(Session& session, Renderer& renderer, const SceneFacts& facts, const Keys& keys, ViewSettings& settings,
-              Timing timing, bool always, float pixelsPerUnit);
+              HistoryControl& history, Timing timing, bool always, float pixelsPerUnit);
 
     // Whether to draw only what changed: somebody measures meanwhile.
     void rest(bool resting) { resting_ = resting; }
@@ -34,6 +35,11 @@ public:
     bool renderedNow() const { return renderedNow_; }          // a frame was finished in this call
     bool upToDate() const { return drawn_ == now_ && !busy_; } // the picture is what the session says
     bool busy() const { return busy_; }                        // a frame is under way
+    // Places of the picture, in [0, 1]² from its upper left corner: clicked with the left button without dragging, and
+    // where the pointer is.
+    const std::optional<glm::vec2>& clicked() const { return clicked_; }
+    const std::optional<glm::vec2>& pointed() const { return pointed_; }
+    bool rightClicked() const { return rightClicked_; }
 
 private:
     enum class Drag { None, Orbit, Pan, Zoom, Look, Handle, Ruler, Line };
@@ -42,9 +48,10 @@ private:
     Motion ofMouse() const;
     Motion ofKeys(const Keys& keys, const ViewSettings& settings, float sceneSize) const;
     void grab(const Keys& keys);
+    void click();
     void hover(const Session& session, const ViewSettings& settings, bool hovered);
     void drawOver(const Session& session, const ViewSettings& settings) const;
-    void render(Session& session, Renderer& renderer, Timing timing, bool always);
+    void render(Session& session, Renderer& renderer, HistoryControl& history, Timing timing, bool always);
     void takePoint(Session& session, const Renderer& renderer, float sceneSize);
     void drawLight(const Session& session) const;
     void drawTarget(const Session& session) const;
@@ -56,6 +63,8 @@ private:
     ScreenView screen_; // the picture that the pointer is on; as the camera stood when the call began
     int pane_ = 0;      // of two pictures side by side, which one that is
     Drag drag_ = Drag::None;
+    std::optional<glm::vec2> clicked_, pointed_;
+    bool rightClicked_ = false;
     RulerGrip rulerGrip_ = RulerGrip::None;  // under the pointer, or held
     bool onLine_ = false;                    // the pointer is on the wipe's line, or holds it
     bool dragsLight_ = false;                // instead of the camera
@@ -69,6 +78,7 @@ private:
     double targetUntil_ = 0, speedUntil_ = 0; // how long they are drawn; ImGui's time [s]
 
     bool restart_ = false, resting_ = false;
+    Turn turn_ = Turn::Next;            // of the frame that is under way
     std::vector<uint32_t> now_, drawn_; // what decides the picture, as words: of this call, of the last frame begun
     uint64_t frames_ = 0, settledFrame_ = 0;
     bool renderedNow_ = false, busy_ = false;

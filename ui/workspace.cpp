@@ -15,10 +15,10 @@ constexpr ImGuiWindowFlags fixedWindow = ImGuiWindowFlags_NoTitleBar | ImGuiWind
 constexpr float sideWidth = 27;
 constexpr float narrowWidth = 64;
 constexpr float lowestDrawer = 8;
-constexpr float firstTimings = 19, firstBuffers = 29, firstTradeOff = 27;
-constexpr double step = 1.0 / 60;     // of time, by the step button [s]
-constexpr double smooth = 1.0 / 60;   // between two frames of a bar that fills [s]
-constexpr double idle = 0.1;          // between two frames of a window with nothing new to show [s]
+constexpr float firstTimings = 19, firstBuffers = 29, firstTradeOff = 27, firstMotion = 22, firstProbe = 22;
+constexpr double step = 1.0 / 60;   // of time, by the step button [s]
+constexpr double smooth = 1.0 / 60; // between two frames of a bar that fills [s]
+constexpr double idle = 0.1;        // between two frames of a window with nothing new to show [s]
 constexpr double whileMeasuring = 0.25;
 constexpr float longestFrame = 0.25f; // [s]; after a pause of the program time does not jump further
 
@@ -66,7 +66,8 @@ Workspace::Workspace(Session& session, Renderer& renderer, SceneLoader& loader, 
     , actions_(std::move(actions))
     , facts_(session.scene)
     , yardstick_(actions_.truthCache)
-    , tradeOff_(actions_.measuringContext, actions_.truthCache) {
+    , tradeOff_(actions_.measuringContext, actions_.truthCache)
+    , motion_(actions_.motionContext, actions_.truthCache) {
     playback_.playing = session.timeStep != 0;
     side_.setPresetNames(actions_.presetNames());
 }
@@ -99,7 +100,7 @@ double Workspace::patience() const {
     if (viewport_.renderedNow() || viewport_.busy() || playback_.playing || windowPictureIn_ > 0 ||
         chartPictureIn_ > 0 || drawer_ == Drawer::Timings)
         return 0;
-    if (tradeOff_.measuring()) return whileMeasuring; // what is measured shall have the machine
+    if (measuring()) return whileMeasuring; // what is measured shall have the machine
     return loader_.progress() || messageSeconds_ > 0 || pictureWanted_ || !saving_.empty() ? smooth : idle;
 }
 
@@ -109,8 +110,9 @@ Timing Workspace::timing() const {
 
 void Workspace::draw(const Keys& keys, float seconds, float pixelsPerUnit) {
     takeLoaded();
-    if (std::string line = tradeOff_.poll(); !line.empty()) say(std::move(line));
-    viewport_.rest(tradeOff_.measuring());
+    for (std::string line : {tradeOff_.poll(), motion_.poll()})
+        if (!line.empty()) say(std::move(line));
+    viewport_.rest(measuring());
     strokes(keys);
     sinceAdvance_ += seconds;
     if (!viewport_.busy()) { // a picture that is under way is of the time when it began
@@ -129,6 +131,8 @@ void Workspace::draw(const Keys& keys, float seconds, float pixelsPerUnit) {
     if (drawer_ != Drawer::Closed) {
         const float first = drawer_ == Drawer::Buffers    ? firstBuffers
                             : drawer_ == Drawer::TradeOff ? firstTradeOff
+                            : drawer_ == Drawer::Motion   ? firstMotion
+                            : drawer_ == Drawer::Probe    ? firstProbe
                                                           : firstTimings;
         drawerHeight = std::min(drawerHeight_ ? *drawerHeight_ * em : std::min(first * em, 0.6f * below), highest);
     }
@@ -138,17 +142,23 @@ void Workspace::draw(const Keys& keys, float seconds, float pixelsPerUnit) {
     bar({screen.x, barHeight});
     Requests requests;
     if (beginFixed("side", {left, barHeight}, {side, sideHeight}, ImGuiWindowFlags_AlwaysVerticalScrollbar))
-        requests = side_.draw(session_, facts_, playback_, view_);
+        requests = side_.draw(session_, facts_, playback_, view_, history_, historyLength());
     ImGui::End();
 
     ImGui::PushStyleVar(ImGuiStyleVar_WindowPadding, ImVec2(0, 0));
     if (beginFixed("view", {0, barHeight}, {left, viewHeight},
                    ImGuiWindowFlags_NoScrollbar | ImGuiWindowFlags_NoScrollWithMouse)) {
-        viewport_.draw(session_, renderer_, facts_, keys, view_, timing(), drawer_ == Drawer::Timings, pixelsPerUnit);
+        const bool probing = drawer_ == Drawer::Probe && probe_.probe.following();
+        renderer_.inspect({.images = drawer_ == Drawer::Buffers || probing,
+                           .probe = probing ? probe_.probe.pixel(session_.size) : std::nullopt});
+        viewport_.draw(session_, renderer_, facts_, keys, view_, history_, timing(), drawer_ == Drawer::Timings,
+                       pixelsPerUnit);
         yardstick_.snapshotsWanted = view_.rulerShown;
         yardstick_.update(session_, renderer_, viewport_.frames(), viewport_.upToDate());
         if (renderer_.hasFrame())
             compare_.overlay(session_, yardstick_, view_, {0, barHeight}, {left, viewHeight}, costs());
+        if (drawer_ == Drawer::Probe) followProbe({0, barHeight}, {left, viewHeight});
+        if (history_.frozen()) frozenHint({0, barHeight}, left);
         if (loader_.progress())
             loadingBar({0, barHeight + viewHeight}, left, keys.escape);
         else
@@ -181,10 +191,22 @@ void Workspace::strokes(const Keys& keys) {
     if (keys.restart) viewport_.restart();
     if (keys.show) session_.display.show = session_.display.show == Show::Lit ? Show::Shadow : Show::Lit;
     if (keys.play) playback_.playing = !playback_.playing;
+    if (keys.freeze || keys.step || keys.runTo) {
+        if (historyLength() == 0)
+            say(fmt::format("{} keeps no history to hold still", session_.techniques.card().title));
+        else if (keys.freeze)
+            history_.freeze(!history_.frozen());
+        else if (keys.step)
+            history_.step();
+        else if (history_.runToTarget(historyLength()))
+            viewport_.restart();
+    }
     compare_.strokes(keys, session_, yardstick_, view_);
     if (keys.buffers) toggle(Drawer::Buffers);
     if (keys.timings) toggle(Drawer::Timings);
     if (keys.tradeOff) toggle(Drawer::TradeOff);
+    if (keys.motion) toggle(Drawer::Motion);
+    if (keys.probe) openProbe();
     if (keys.next) say(keys.light ? side_.light().next(session_, facts_) : side_.camera().next(session_, facts_));
     if (keys.open) chooser_.open(facts_.scene->file.parent_path());
 }
@@ -192,12 +214,33 @@ void Workspace::strokes(const Keys& keys) {
 void Workspace::advanceTime(float seconds) {
     session_.timeStep = 0;
     if (facts_.duration(session_.clip) <= 0) playback_.playing = playback_.stepOnce = false;
-    if (playback_.playing)
+    if (playback_.playing && history_.frozen()) // time stands, too; frame by frame it goes on in steps of its own
+        session_.timeStep = history_.counting() ? step * static_cast<double>(playback_.speed) : 0;
+    else if (playback_.playing)
         session_.timeStep = seconds * playback_.speed;
     else if (playback_.stepOnce)
         session_.timeStep = step;
     playback_.stepOnce = false;
     session_.time += session_.timeStep;
+}
+
+int Workspace::historyLength() const { return renderer_.hasFrame() ? renderer_.flow().historyLength() : 0; }
+
+// Lest anybody wonders why nothing goes on.
+void Workspace::frozenHint(ImVec2 corner, float width) const {
+    const int length = historyLength();
+    const float em = ImGui::GetFontSize(), padding = 0.4f * em;
+    const ShortText line = history_.counting() ? ShortText("frame {}", length)
+                                               : ShortText("frozen after {} frame{}", length, length == 1 ? "" : "s");
+    const ImVec2 extent = ImGui::CalcTextSize(line.begin(), line.end());
+    const ImVec2 from{corner.x + width - extent.x - 2 * padding - 0.6f * em, corner.y + 0.6f * em};
+    ImVec4 paper = ImGui::GetStyleColorVec4(ImGuiCol_PopupBg);
+    paper.w = 0.85f;
+    ImDrawList& list = *ImGui::GetWindowDrawList();
+    list.AddRectFilled(from, {from.x + extent.x + 2 * padding, from.y + extent.y + padding}, ImGui::GetColorU32(paper),
+                       0.3f * em);
+    list.AddText({from.x + padding, from.y + padding / 2}, ImGui::GetColorU32(colour::accent), line.begin(),
+                 line.end());
 }
 
 void Workspace::bar(ImVec2 size) {
@@ -222,6 +265,12 @@ void Workspace::bar(ImVec2 size) {
         ImGui::SameLine();
         if (toggleButton("Trade-off", drawer_ == Drawer::TradeOff)) toggle(Drawer::TradeOff);
         tooltip("Cost and error of every technique, and the best within a budget (M)");
+        ImGui::SameLine();
+        if (toggleButton("Motion", drawer_ == Drawer::Motion)) toggle(Drawer::Motion);
+        tooltip("How long a technique drags a ghost behind when something moves (J)");
+        ImGui::SameLine();
+        if (toggleButton("Probe", drawer_ == Drawer::Probe)) openProbe();
+        tooltip("What a technique tells of one pixel, over the frames (P)");
         ImGui::SameLine();
         if (ImGui::Button("Help")) openHelp_ = true;
         tooltip("Keys and mouse (H)");
@@ -278,6 +327,10 @@ void Workspace::drawer(float pixelsPerUnit) {
             attempt([&] { say(fmt::format("Saved {}", actions_.saveBuffer(*shot).string())); });
     } else if (drawer_ == Drawer::TradeOff) {
         drawTradeOff();
+    } else if (drawer_ == Drawer::Motion) {
+        drawMotion();
+    } else if (drawer_ == Drawer::Probe) {
+        probe_.draw(session_);
     } else if (timings_.draw(renderer_, renderer_.softwareRenderer() && timedHow_ == Timing::Queries)) {
         exportTimings();
     }
@@ -285,7 +338,7 @@ void Workspace::drawer(float pixelsPerUnit) {
 
 void Workspace::drawTradeOff() {
     const bool idle = !tradeOff_.measuring();
-    const TradeOffPanel::Requests requests = tradeOff_.draw(session_, chartPictureIn_ > 0);
+    const TradeOffPanel::Requests requests = tradeOff_.draw(session_, chartPictureIn_ > 0, motion_.measuring());
     if (idle && tradeOff_.measuring()) playback_.playing = false; // a still view is measured
     if (requests.restart) viewport_.restart();
     if (requests.savePicture) chartPictureIn_ = 3;
@@ -294,6 +347,34 @@ void Workspace::drawTradeOff() {
             const std::string table = tradeOff_.csv(session_, renderer_.driver());
             say(fmt::format("Saved {}", actions_.saveTradeOff(table).string()));
         });
+}
+
+void Workspace::drawMotion() {
+    const bool idle = !motion_.measuring();
+    motion_.draw(session_, facts_, tradeOff_.measuring());
+    if (idle && motion_.measuring()) playback_.playing = false; // it starts from a moment
+}
+
+// Of the pixel under the pointer, where none is followed yet.
+void Workspace::openProbe() {
+    toggle(Drawer::Probe);
+    if (drawer_ == Drawer::Probe && !probe_.probe.following() && viewport_.pointed())
+        probe_.probe.follow(*viewport_.pointed());
+}
+
+void Workspace::followProbe(ImVec2 corner, ImVec2 size) {
+    if (viewport_.clicked()) probe_.probe.follow(*viewport_.clicked());
+    if (viewport_.rightClicked()) probe_.probe.letGo();
+    if (viewport_.renderedNow()) {
+        const bool two = session_.comparison.against == Against::Technique;
+        probe_.probe.look(renderer_, session_.techniques.technique().probePlots(),
+                          ShortText("{}{}", two ? "a/" : "", session_.techniques.card().id).view());
+    }
+    probe_.probe.take();
+    const int panes = session_.comparison.sideBySide() ? 2 : 1;
+    for (int i = 0; i < panes; ++i)
+        probe_.overlay(session_, {corner.x + static_cast<float>(i) * size.x / static_cast<float>(panes), corner.y},
+                       {size.x / static_cast<float>(panes), size.y});
 }
 
 void Workspace::carryOut(Requests& requests) {

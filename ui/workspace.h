@@ -5,6 +5,8 @@
 #include "ui/buffer_panel.h"
 #include "ui/compare_panel.h"
 #include "ui/file_chooser.h"
+#include "ui/motion_panel.h"
+#include "ui/probe_panel.h"
 #include "ui/side_panel.h"
 #include "ui/timings_panel.h"
 #include "ui/tradeoff_panel.h"
@@ -36,7 +38,7 @@ struct Actions {
     std::function<std::filesystem::path(const std::string& csv)> saveTradeOff;
     std::function<std::filesystem::path()> picturesFolder;
     std::function<void(const std::filesystem::path& folder)> setPicturesFolder; // from now on
-    SideContext::MakeCurrent measuringContext; // for a thread that measures
+    SideContext::MakeCurrent measuringContext, motionContext;                   // for threads that measure
     TruthCache* truthCache = nullptr;                                           // of truths that are known already
 };
 
@@ -59,10 +61,12 @@ public:
     double patience() const;
 
 private:
-    enum class Drawer { Closed, Buffers, Timings, TradeOff };
+    enum class Drawer { Closed, Buffers, Timings, TradeOff, Motion, Probe };
 
     void strokes(const Keys& keys);
     void advanceTime(float seconds);
+    int historyLength() const;
+    void frozenHint(ImVec2 corner, float width) const;
     void bar(ImVec2 size);
     void status();
     void drawer(float pixelsPerUnit);
@@ -77,6 +81,10 @@ private:
     std::array<double, 2> costs() const;
     void exportTimings();
     void drawTradeOff();
+    void drawMotion();
+    void openProbe();
+    void followProbe(ImVec2 corner, ImVec2 size);
+    bool measuring() const { return tradeOff_.measuring() || motion_.measuring(); }
     void dialogs(const Keys& keys);
     void helpDialog(bool close);
     void errorDialog(bool close);
@@ -94,6 +102,7 @@ private:
     SceneFacts facts_;
     Playback playback_;
     ViewSettings view_;
+    HistoryControl history_;
     SidePanel side_;
     Viewport viewport_;
     Yardstick yardstick_;
@@ -103,6 +112,8 @@ private:
     BufferPanel buffers_;
     TimingsPanel timings_;
     TradeOffPanel tradeOff_;
+    MotionPanel motion_;
+    ProbePanel probe_;
     FileChooser chooser_, folderChooser_{FileChooser::Pick::Folder};
 
     Drawer drawer_ = Drawer::Closed;

@@ -28,10 +28,10 @@ std::string_view stageName(Stage stage) {
     return names[static_cast<size_t>(stage)];
 }
 
-void Flow::begin() {
-    lastImages_.clear();
+void Flow::begin(Turn turn) {
+    if (turn == Turn::Next) lastImages_.clear();
     for (const ImageNode& image : images_) {
-        if (!image.kept) continue;
+        if (!image.kept || turn == Turn::Again) continue;
         Remembered& last = lastImages_.emplace_back(Remembered{image.label, image.spec, 0, 1});
         for (const PastNode& past : pasts_)
             if (past.label == image.label) last.key = past.key, last.age = past.age + 1;
@@ -127,6 +127,8 @@ PastImage Flow::past(Scope scope, const ImageSpec& spec, uint64_t key) {
         return image.label == label && image.spec.sameStorage(spec) && image.key == key;
     });
     const int age = last == lastImages_.end() ? 0 : last->age;
+    // What cannot be read is lost: its texture is cleared.
+    if (age == 0) std::erase_if(lastImages_, [&](const Remembered& image) { return image.label == label; });
     pasts_.push_back({spec, label, key, age});
     return PastImage(static_cast<int>(pasts_.size()) - 1, age);
 }
@@ -135,7 +137,14 @@ bool Flow::living() const {
     return std::any_of(pasts_.begin(), pasts_.end(), [](const PastNode& past) { return !past.finished; });
 }
 
+int Flow::historyLength() const {
+    int length = 0;
+    for (const PastNode& past : pasts_) length = std::max(length, past.age + 1);
+    return length;
+}
+
 void Flow::forget() {
+    lastImages_.clear();
     for (ImageNode& image : images_) image.kept = false;
 }
 

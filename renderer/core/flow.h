@@ -161,6 +161,12 @@ struct Scope {
     std::string_view owner = {};
 };
 
+// What a frame is to the one before.
+enum class Turn : uint8_t {
+    Next,
+    Again, // instead of it: what that one read of its past is read once more
+};
+
 class Flow {
 public:
     struct ImageNode {
@@ -190,7 +196,7 @@ public:
     using Writes = FixedVector<ImageSpec, 5>;
 
     // Starts a new frame: forgets the passes; remembers which images there were, for past().
-    void begin();
+    void begin(Turn turn = Turn::Next);
 
     // Appends a pass and returns the images it writes, in the order of spec.writes. A pass equal to an earlier one of
     // this frame in everything but its label is not run again: the earlier images are returned and the label becomes
@@ -212,6 +218,8 @@ public:
     void finish(PastImage image) { pasts_[static_cast<size_t>(image.index())].finished = true; }
     // Whether another frame of the same inputs may look different.
     bool living() const;
+    // How many frames in a row the longest history holds, this one among them; 0: nothing keeps any.
+    int historyLength() const;
     // Forgets the past, so that the next frame is a first one.
     void forget();
 
@@ -260,7 +268,7 @@ private:
     std::vector<PastNode> pasts_;
     std::vector<std::pair<int, int>> aliases_;
     std::vector<std::unique_ptr<std::string>> labels_; // interned for the life of the flow
-    std::vector<Remembered> lastImages_;               // of the frame before
+    std::vector<Remembered> lastImages_;               // that this frame can read
     std::vector<int> kept_;                            // labels ever asked for by past()
     std::vector<uint32_t> packed_;
     int repeat_ = 0, lastRepeat_ = 0;

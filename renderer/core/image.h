@@ -31,6 +31,7 @@ struct Channel {
     std::string_view meaning;
     Unit unit = Unit::None;
     float min = 0, max = 0;
+    std::span<const std::string_view> names = {}; // of the whole numbers from 0 on, where they are kinds of something
 };
 
 struct ImageSpec {

@@ -5,6 +5,7 @@
 #pragma once
 
 #include "renderer/core/flow.h"
+#include "renderer/core/probe.h"
 
 #include <glm/glm.hpp>
 
@@ -36,6 +37,8 @@ public:
     // Appends passes and returns ψ(x, y) in [0, 1], the fraction of the light that a pixel's surface does not see:
     // one R32F image of the picture's size named "shadow". Pixels without a surface are 0.
     virtual Image build(Flow& flow, Scope scope, const Inputs& inputs) const = 0;
+    // What it has to tell of one pixel, from images that are there while somebody looks into them.
+    virtual std::span<const ProbePlot> probePlots() const { return {}; }
 };
 
 // The title card: who, when, what, and what it cannot do. It feeds the picker, `penumbra list` and the docs.

@@ -65,7 +65,7 @@ FlowRunner::~FlowRunner() {
 
 int FlowRunner::turnOf(const Flow::ImageNode& node) const {
     if (node.repeat > 0) return (node.repeat - 1) % 2;
-    return node.kept ? static_cast<int>(frame_ % 2) : 0;
+    return node.kept ? turn_ : 0;
 }
 
 const FlowRunner::Slot* FlowRunner::find(int label, int turn) const {
@@ -108,7 +108,7 @@ std::shared_ptr<const Texture> FlowRunner::share(const Flow& flow, Image image) 
 
 const Texture& FlowRunner::texture(const Flow& flow, PastImage image) const {
     const Flow::PastNode& node = flow.pasts()[static_cast<size_t>(image.index())];
-    const Slot* slot = find(node.label, static_cast<int>((frame_ + 1) % 2));
+    const Slot* slot = find(node.label, 1 - turn_);
     ensure(slot, "a past image was asked for that was not allocated");
     return *slot->texture;
 }
@@ -263,9 +263,10 @@ FlowRunner::Pace& FlowRunner::paceOf(const Flow& flow, const Flow::PassNode& pas
     return *pace;
 }
 
-void FlowRunner::begin(const Flow& flow, Timing timing) {
+void FlowRunner::begin(const Flow& flow, Timing timing, Turn turn) {
     giveUp();
     ++frame_;
+    if (turn == Turn::Next) turn_ = 1 - turn_;
     size_t uniformBytes = 0;
     chosen_.clear();
     for (const Flow::PassNode& pass : flow.passes()) {
@@ -281,8 +282,7 @@ void FlowRunner::begin(const Flow& flow, Timing timing) {
                         UniformRing::aligned(pass.parameterBlock.size() * sizeof(uint32_t));
     }
     for (const Flow::ImageNode& node : flow.images()) allocate(flow, node.label, turnOf(node), node.spec, false);
-    for (const Flow::PastNode& node : flow.pasts())
-        allocate(flow, node.label, static_cast<int>((frame_ + 1) % 2), node.spec, node.age == 0);
+    for (const Flow::PastNode& node : flow.pasts()) allocate(flow, node.label, 1 - turn_, node.spec, node.age == 0);
 
     careful_ = std::max(milliseconds_, timer_.newest().milliseconds) > dearFrame;
     for (const Flow::PassNode& pass : flow.passes())

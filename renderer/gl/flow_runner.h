@@ -31,7 +31,7 @@ public:
 
     // Compiles and allocates what is new. If something cannot be had (a shader that does not compile, a texture too
     // large) it throws before any pass has run. The flow stays as it is until the last step.
-    void begin(const Flow& flow, Timing timing);
+    void begin(const Flow& flow, Timing timing, Turn turn = Turn::Next);
     // Runs passes for about so long; true when all are done. Textures that no pass used any more are freed then.
     bool step(const Flow& flow, double milliseconds);
     bool underWay() const { return underWay_; }
@@ -108,6 +108,7 @@ private:
     Handle<destroyFramebuffer> framebuffer_;
     PassTimer timer_;
     uint64_t frame_ = 0;
+    int turn_ = 0; // of the two textures of a kept image the one that is written; the other is the past
 
     std::vector<Programs> chosen_; // one a pass
     std::vector<Pace> paces_;

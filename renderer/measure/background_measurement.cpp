@@ -59,13 +59,39 @@ void BackgroundMeasurement::search(std::vector<Session> views, Question question
         const SideContext::Use current(context_);
         std::vector<Measurer> measurers;
         for (Session& view : views) measurers.emplace_back(std::move(view), planWith(truth), progress);
-        const Evaluate evaluate =
-            measuredIn(measurers, checkFree(question.starts, question.free),
-                       [&](SettingResult result) { letterbox->put(std::move(result)); });
+        const Evaluate evaluate = measuredIn(measurers, checkFree(question.starts, question.free),
+                                             [&](SettingResult result) { letterbox->put(std::move(result)); });
         BudgetSearch found = searchBudget(question.starts, question.free, question.budget, evaluate);
         const bool complete = found.complete;
         return End{std::move(found), complete};
     });
+}
+
+void BackgroundMeasurement::move(Session view, std::vector<Setting> settings, MotionEvent motion, int count,
+                                 TruthSettings truth) {
+    letterbox_ = std::make_shared<Letterbox>();
+    for (size_t i = 0; i < settings.size(); ++i) settings[i].place = i;
+    work_.start([this, letterbox = letterbox_, view = std::move(view), settings = std::move(settings), motion, count,
+                 truth](Progress& progress) mutable {
+        const SideContext::Use current(context_);
+        MeasurementPlan plan = planWith(truth);
+        plan.motion = motion;
+        plan.moves = true;
+        plan.frames = count;
+        plan.heard = [&](const Setting& setting, int frame, const Errors& errors) {
+            const std::lock_guard lock(letterbox->mutex);
+            letterbox->frames.push_back({setting.place, frame, errors.all.rmse, errors.penumbra.rmse});
+        };
+        Measurement measurement = penumbra::measure(std::move(view), std::move(settings), plan, progress);
+        for (SettingResult& result : measurement.results) letterbox->put(std::move(result));
+        return End{{}, measurement.complete};
+    });
+}
+
+std::vector<BackgroundMeasurement::MovedFrame> BackgroundMeasurement::takeFrames() {
+    if (!letterbox_) return {};
+    const std::lock_guard lock(letterbox_->mutex);
+    return std::exchange(letterbox_->frames, {});
 }
 
 std::vector<SettingResult> BackgroundMeasurement::take() {

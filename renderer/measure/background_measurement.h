@@ -27,11 +27,20 @@ public:
         Budget budget;
     };
     void search(std::vector<Session> views, Question question, TruthSettings truth);
+    // What happens to settings, side by side, while the view moves for so many frames.
+    void move(Session view, std::vector<Setting> settings, MotionEvent motion, int frames, TruthSettings truth);
     void stop() { work_.stop(); } // and keep what is done
 
     const Progress* progress() const { return work_.progress(); } // null: nothing runs
     // What was measured since the last call, of the work that was started last.
     std::vector<SettingResult> take();
+    // Of move(), frames that were compared since the last call. `setting`: which of them, in their order.
+    struct MovedFrame {
+        size_t setting;
+        int frame;
+        double rmse, penumbraRmse;
+    };
+    std::vector<MovedFrame> takeFrames();
     // Once, when the work has ended; of a search, what it came to. Throws what it threw.
     struct End {
         std::optional<BudgetSearch> search;
@@ -43,6 +52,7 @@ private:
     struct Letterbox {
         std::mutex mutex;
         std::vector<SettingResult> results;
+        std::vector<MovedFrame> frames;
         void put(SettingResult result) {
             const std::lock_guard lock(mutex);
             results.push_back(std::move(result));

@@ -182,6 +182,7 @@ private:
                 FrameResult& result = lane.result.frames[static_cast<size_t>(frame)];
                 result.errors = errorsOf(lane.shadow, *truth_);
                 result.standardError = truth_->meanPenumbraStandardError;
+                if (plan_.heard) plan_.heard(lane.result.setting, frame, *result.errors);
             }
             if (frame >= firstChange && !plan_.path && plan_.motion != MotionEvent::CameraPan &&
                 !lane.shadowBefore.empty()) {

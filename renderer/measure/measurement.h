@@ -32,6 +32,8 @@ struct MeasurementPlan {
     std::optional<CameraPath> path;    // of the camera; it moves, then
     std::optional<MotionEvent> motion; // what happens; it moves, then
     TruthOfView truth;
+    // Hears of every frame of a setting as soon as it is compared with a truth of its own.
+    std::function<void(const Setting& setting, int frame, const Errors& errors)> heard = {};
     int biasMaps = 0; // if there are, and the view is still, that many shadow maps are compared with the truth
 };
 

@@ -36,14 +36,16 @@ bool SceneState::moved(const Drawable& d) const {
     return differ(pose_.worldFromMesh, lastPose_.worldFromMesh, skin.firstMatrix, skin.joints.size());
 }
 
-void SceneState::update(size_t clip, double seconds, bool ground) {
-    const bool first = !posed_, wasMoving = moving_;
+void SceneState::update(size_t clip, double seconds, bool ground, Turn turn) {
+    const bool first = !posed_, wasMoving = moving_, again = turn == Turn::Again && !first;
     // A scene without a clip has one pose, and a paused one keeps it.
     const bool still = !first && (scene_->animations.empty() || (clip == clip_ && seconds == seconds_));
+    if (again && still && ground == ground_.has_value()) return;
     if (still) {
-        if (wasMoving) lastPose_ = pose_;
+        if (wasMoving && !again) lastPose_ = pose_;
     } else {
-        std::swap(lastPose_, pose_);
+        if (!again) std::swap(lastPose_, pose_);
+        if (again) ++poseVersion_;
         evaluatePose(*scene_, clip, seconds, pose_);
         if (first) {
             lastPose_ = pose_;

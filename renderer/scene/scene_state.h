@@ -19,8 +19,9 @@ class SceneState {
 public:
     void setScene(std::shared_ptr<const Scene> scene);
     // Poses the scene for a frame. `ground` adds the plane below it. A thing "moves" if its matrix, joints or morph
-    // weights differ from those of the update before; the first update after setScene or restart moves nothing.
-    void update(size_t clip, double seconds, bool ground);
+    // weights differ from those of the update before; the first update after setScene or restart moves nothing. Again:
+    // instead of that update.
+    void update(size_t clip, double seconds, bool ground, Turn turn = Turn::Next);
     void restart() { posed_ = false; }
 
     const Scene* scene() const { return scene_.get(); }

@@ -407,6 +407,7 @@ struct HistoryConstants {
 struct FilterConstants {
     ResolveConstants resolve;
     vec4 forwardScale;       // xyz the view axis, w = pixels² per m² at eye depth 1; pixels are square
+    vec4 probed;             // xy the pixel that is looked at closely
     vec4 taps[mostTaps / 2]; // of the unit disk, two to a vector
 };
 
@@ -417,9 +418,59 @@ constexpr Channel bufferChannels[] = {
      Unit::Metres},
     {"blocker", "d_b", "mean distance of what blocks, along the light's axis; 0: nothing does", Unit::Metres}};
 
+// Images that only explain: the shaders write them where somebody looks. Numbers of kinds as in the shaders.
+constexpr std::string_view eventNames[] = {"no surface",
+                                           "history goes on",
+                                           "new: was off screen",
+                                           "new: another depth",
+                                           "new: nothing was there",
+                                           "new: a mover's shadow",
+                                           "a mover's shadow has left"};
+constexpr std::string_view stateNames[] = {"no surface",
+                                           "samples alone",
+                                           "samples and neighbours",
+                                           "neighbours alone",
+                                           "new: was off screen",
+                                           "new: another depth",
+                                           "new: nothing was there",
+                                           "new: a mover's shadow",
+                                           "a mover's shadow has left"};
+constexpr Channel testChannels[] = {
+    {"tau", "τ_n", "hard shadow test of this frame; 1: the point of the light is hidden", Unit::None, 0, 1},
+    {"event", "", "what became of the history in this frame", Unit::None, 0, std::size(eventNames) - 1, eventNames},
+    {"light-x", "x", "point of the light that was tested, in half widths from its centre", Unit::None, -1, 1},
+    {"light-y", "y", "point of the light that was tested, in half heights from its centre", Unit::None, -1, 1}};
+constexpr Channel stateChannels[] = {
+    {"state", "", "what is shown, or why the history is new", Unit::None, 0, std::size(stateNames) - 1, stateNames},
+    {"filtered", "1 − w", "share of the neighbours' mean in what is shown", Unit::None, 0, 1},
+    {"error", "ŝ_n", "standard error of the samples (eq. 3); 1 with fewer than two", Unit::None, 0, 0.5f},
+    {"estimate", "ψ̂_n", "mean of the samples, before neighbours are asked", Unit::None, 0, 1}};
+constexpr Channel neighbourChannels[] = {
+    {"x", "", "of a neighbour that the filter asks, from the probed pixel to the right", Unit::Pixels},
+    {"y", "", "upwards", Unit::Pixels},
+    {"counted", "", "1: it counts; 0: another surface, or it has no history; −1: nobody was asked", Unit::None, -1, 1}};
+
+constexpr ProbeSeries courseSeries[] = {{"test.tau", "τ_n", ProbeMark::Dots},
+                                        {"state.estimate", "ψ̂_n"},
+                                        {"state.error", "± ŝ_n", ProbeMark::Band},
+                                        {"shadow.psi", "shown"}};
+constexpr ProbeSeries lightSeries[] = {{"test.light-x", "x"}, {"test.light-y", "y"}, {"test.tau", "hidden"}};
+constexpr ProbeSeries neighbourSeries[] = {
+    {"neighbours.x", "x"}, {"neighbours.y", "y"}, {"neighbours.counted", "counted"}};
+constexpr ProbePlot plots[] = {
+    {ProbePlot::Kind::Course, "ψ over the frames of the history",
+     "Each frame's hard test τ, the mean ψ̂ of all of them with its standard error ŝ (eq. 3) to both sides, and ψ as it "
+     "is shown, after the neighbourhood filter.",
+     courseSeries},
+    {ProbePlot::Kind::Places, "Points of the light", "Where on the light each test went to. Filled: hidden.",
+     lightSeries},
+    {ProbePlot::Kind::Around, "Neighbours", "Whom the filter asks. Filled: the same surface, which counts.",
+     neighbourSeries}};
+
 class Temporal final : public Technique {
 public:
     ParameterSet& parameters() override { return parameters_; }
+    std::span<const ProbePlot> probePlots() const override { return plots; }
 
     glm::ivec2 margin(glm::ivec2 pictureSize) const override {
         return glm::ivec2(glm::round(glm::vec2(pictureSize) * (parameters_.overscan / 200)));
@@ -434,8 +485,8 @@ public:
         if (past.age() >= most + int32_t(parameters_.startWeight) && !moves(inputs)) flow.finish(past);
 
         const ShadowMap map = drawShadowMap(flow, scope, inputs, describeMap(inputs, past.age()));
-        const Image history = addSample(flow, scope, inputs, map, past, buffer, most);
-        return show(flow, scope, inputs, map.view, history);
+        const Flow::Outputs images = addSample(flow, scope, inputs, map, past, buffer, most);
+        return show(flow, scope, inputs, map.view, images);
     }
 
 private:
@@ -502,8 +553,9 @@ private:
                 vec4(kept, most, 0, 0)};
     }
 
-    Image addSample(Flow& flow, Scope scope, const Inputs& inputs, const ShadowMap& map, const PastImage& past,
-                    const ImageSpec& buffer, int32_t most) const {
+    // The buffer and, where somebody looks, the test.
+    Flow::Outputs addSample(Flow& flow, Scope scope, const Inputs& inputs, const ShadowMap& map, const PastImage& past,
+                            const ImageSpec& buffer, int32_t most) const {
         const float kept = lightChanged(inputs) ? float(parameters_.lightMemory) : float(mostFloats);
         Resolver resolver{.shader = "techniques/temporal.glsl",
                           .constants = historyConstants(inputs, map.view, kept, most),
@@ -512,6 +564,10 @@ private:
                           .format = buffer.format,
                           .withMargin = true};
         if (stands(inputs, past)) resolver.defines.push_back({"STILL"});
+        if (inputs.inspection.images) {
+            resolver.defines.push_back({"INSPECTED"});
+            resolver.also.push_back({"test", Format::RGBA16F, buffer.extent, testChannels});
+        }
         if (!moves(inputs))
             return resolve(flow, scope, inputs, resolver, {{"shadowMap", map.depth}, {"history", past}}, parameters_);
         resolver.defines.push_back({"MOTION"});
@@ -520,11 +576,13 @@ private:
                        parameters_);
     }
 
-    Image show(Flow& flow, Scope scope, const Inputs& inputs, const LightViewBlock& light, Image history) const {
+    Image show(Flow& flow, Scope scope, const Inputs& inputs, const LightViewBlock& light,
+               const Flow::Outputs& images) const {
         const View& view = inputs.view;
         FilterConstants constants{
             resolveConstants(inputs, light),
             vec4(glm::normalize(glm::cross(view.rayDy, view.rayDx)), 1 / glm::dot(view.rayDx, view.rayDx)),
+            vec4(0),
             {}};
         if (parameters_.filter.neighbourhood == Neighbourhood::Poisson) {
             int i = 0;
@@ -535,12 +593,21 @@ private:
                 ++i;
             }
         }
-        return resolve(flow, scope, inputs,
-                       {.shader = "techniques/temporal_filter.glsl",
-                        .constants = constants,
-                        .table = mostTaps / 2,
-                        .pass = "filter"},
-                       {{"shadowBuffer", history}}, parameters_);
+        Resolver resolver{.shader = "techniques/temporal_filter.glsl", .table = mostTaps / 2, .pass = "filter"};
+        PassReads reads{{"shadowBuffer", images[0]}};
+        if (inputs.inspection.images) {
+            const glm::ivec2 size = inputs.pictureSize();
+            resolver.defines.push_back({"INSPECTED"});
+            resolver.also.push_back({"state", Format::RGBA16F, {size.x, size.y}, stateChannels});
+            reads.push_back({"test", images[1]});
+        }
+        if (inputs.inspection.images && inputs.inspection.probe) {
+            constants.probed = vec4(*inputs.inspection.probe, 0, 0);
+            resolver.defines.push_back({"PROBED"});
+            resolver.also.push_back({"neighbours", Format::RGBA32F, {mostTaps, 1}, neighbourChannels});
+        }
+        resolver.constants = constants;
+        return resolve(flow, scope, inputs, resolver, reads, parameters_)[0];
     }
 
     // Of all that makes a history worthless. The light may move and things may, within the rules for them.

@@ -15,6 +15,9 @@ uniform sampler2D history; // shadowBuffer of the last frame
 uniform sampler2D motion;
 #endif
 uniform writeonly image2D shadowBuffer; // ρ, n, eye depth [m] (negative: a moving caster's shadow), mean blocker depth [m]
+#ifdef INSPECTED
+uniform writeonly image2D test; // τ, what became of the history, xy the point of the light in half sizes
+#endif
 
 const bool absoluteTest = DEPTH_TEST == DEPTH_TEST_ABSOLUTE;
 
@@ -24,6 +27,7 @@ struct Found {
     float blocker; // [m], 0: not known
     bool tagged;   // the shadow of something that moved
     float share, blockerShare; // of the texels
+    vec2 place;                // of the surface in the last frame [pixels]
 };
 
 // Fetches outside the buffer are 0, which is no history. What does not count is left out by choice: nothing times NaN is
@@ -44,7 +48,7 @@ void addTexel(inout Found found, ivec2 place, float weight, float d, float tilt)
 
 Found lookUp(Receiver r)
 {
-    Found found = Found(History(0.0, 0.0), 0.0, false, 0.0, 0.0);
+    Found found = Found(History(0.0, 0.0), 0.0, false, 0.0, 0.0, vec2(r.pixel) + 0.5);
 #ifdef STILL
     // Nothing has moved: the texel is the pixel's own, and shows the same surface.
     vec4 texel = texelFetch(history, r.pixel, 0);
@@ -66,6 +70,7 @@ Found lookUp(Receiver r)
     place = moves ? there : place;
     d = moves ? r.eyeDepth + moved.z : d;
 #endif
+    found.place = place;
     // How the products of the surface's normal with the rays of the last view change, relative to the one at `place`.
     vec2 tilts = vec2(dot(r.normalWorld, lastRayDx.xyz), dot(r.normalWorld, lastRayDy.xyz));
     float along = dot(r.normalWorld, lastRayCorner.xyz) + dot(place, tilts);
@@ -90,6 +95,17 @@ Found lookUp(Receiver r)
     return found;
 #endif
 }
+
+#ifdef INSPECTED
+// The order of eventNames in temporal.cpp.
+float eventOf(Found past, bool known, bool fresh, bool moving, bool tagged)
+{
+    bool outside = any(lessThan(past.place, vec2(0.0))) || any(greaterThanEqual(past.place, vec2(textureSize(history, 0))));
+    bool nothing = texelFetch(history, ivec2(floor(past.place)), 0).y == 0.0;
+    float why = outside ? 2.0 : nothing ? 4.0 : 3.0;
+    return !known ? 0.0 : moving && MOVING != MOVING_IGNORE ? 5.0 : fresh ? why : tagged ? 6.0 : 1.0;
+}
+#endif
 
 void main()
 {
@@ -134,6 +150,10 @@ void main()
     float depthTag = tagged ? -r.eyeDepth : r.eyeDepth;
     bool surface = r.eyeDepth > 0.0;
     imageStore(shadowBuffer, r.pixel, surface ? vec4(h.rho, h.n, depthTag, blocker) : vec4(0.0));
+#ifdef INSPECTED
+    vec2 point = s / max(lightView.light.xy, vec2(1e-9));
+    imageStore(test, r.pixel, vec4(tau, eventOf(past, surface, fresh, moving, tagged), point));
+#endif
 
 #if START != START_HARD && !defined(STILL)
     // A surface that has no history starts with an estimate.

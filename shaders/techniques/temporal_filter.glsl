@@ -3,12 +3,21 @@
 // surface, as wide as the penumbra. Stores nothing that a later frame reads. See renderer/techniques/temporal.cpp.
 //
 // Texture reads: 1 of the buffer and the normal; where it filters, one a tap more.
-#define OWN_CONSTANTS vec4 forward_scale; // xyz the view axis, w = pixels² per m² at eye depth 1
+#define OWN_CONSTANTS                                                                                                      \
+    vec4 forward_scale; /* xyz the view axis, w = pixels² per m² at eye depth 1 */                                         \
+    vec4 probed;        // xy the pixel that is looked at closely
 #include "resolve.glsl"
 #include "lib/temporal.glsl"
 #include "lib/sampling.glsl"
 
 uniform sampler2D shadowBuffer;
+#ifdef INSPECTED
+uniform sampler2D test;
+uniform writeonly image2D state; // what is shown or why it is new, share of the neighbours, ŝ, ψ̂
+#endif
+#ifdef PROBED
+uniform writeonly image2D neighbours; // of the probed pixel: xy [pixels], whether it counts
+#endif
 
 vec2 entry(int i)
 {
@@ -44,6 +53,9 @@ void main()
     sampled = h.n < float(fewSamples) ? 0.0 : sampled;
 
     History sum = h;
+#ifdef PROBED
+    int asks = 0; // neighbours
+#endif
     if (NEIGHBOURHOOD != NEIGHBOURHOOD_OFF && eyeDepth > 0.0 && sampled < 1.0 && here.w != 0.0) {
         vec3 n = unitFromOctahedral(texelFetch(normal, texel, 0).xy);
         vec2 centre = vec2(texel) + 0.5;
@@ -102,8 +114,25 @@ void main()
             bool counts = same && sound(History(other.x, other.y));
             sum.rho += counts ? other.x : 0.0;
             sum.n += counts ? other.y : 0.0;
+#ifdef PROBED
+            if (pixel == ivec2(probed.xy)) imageStore(neighbours, ivec2(i, 0), vec4(step, counts ? 1.0 : 0.0, 0.0));
+#endif
         }
+#ifdef PROBED
+        asks = count;
+#endif
     }
     float psi = mix(estimated(sum), estimated(h), sampled);
     imageStore(shadow, pixel, vec4(eyeDepth > 0.0 ? clamp(psi, 0.0, 1.0) : 0.0));
+#ifdef INSPECTED
+    float filtered = sum.n > h.n ? 1.0 - sampled : 0.0;
+    float event = texelFetch(test, texel, 0).y;
+    // The order of stateNames in temporal.cpp: of a history that goes on, how it is shown.
+    float kind = event == 0.0 ? 0.0 : event > 1.0 ? event + 2.0 : filtered == 0.0 ? 1.0 : filtered == 1.0 ? 3.0 : 2.0;
+    imageStore(state, pixel, vec4(kind, filtered, eyeDepth > 0.0 ? standardError(h) : 0.0, estimated(h)));
+#endif
+#ifdef PROBED
+    for (int i = asks; i < 2 * TABLE && pixel == ivec2(probed.xy); ++i)
+        imageStore(neighbours, ivec2(i, 0), vec4(0.0, 0.0, -1.0, 0.0));
+#endif
 }

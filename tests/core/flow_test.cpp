@@ -111,6 +111,33 @@ TEST_CASE("a past image knows its age, belongs to a key, and may be finished") {
     CHECK_FALSE(flow.living()); // nobody looks back
 }
 
+TEST_CASE("a frame again reads the past of the one that it is instead of, unless that is lost") {
+    Flow flow;
+    const auto frame = [&](Turn turn, uint64_t key = 1) {
+        flow.begin(turn);
+        const PastImage past = flow.past(a, image("history"), key);
+        PassSpec spec = compute("history", 0, {{"past", past}});
+        spec.writes = {image("history")};
+        (void)flow.pass(a, spec);
+        return past.age();
+    };
+    CHECK(frame(Turn::Again) == 0); // of nothing
+    CHECK(flow.historyLength() == 1);
+    CHECK(frame(Turn::Next) == 1);
+    CHECK(frame(Turn::Next) == 2);
+    CHECK(frame(Turn::Again) == 2);
+    CHECK(frame(Turn::Again) == 2);
+    CHECK(flow.historyLength() == 3);
+    CHECK(frame(Turn::Next) == 3);
+    CHECK(frame(Turn::Again, 2) == 0); // cannot read it
+    CHECK(frame(Turn::Again, 1) == 0); // and nobody can any more
+    CHECK(frame(Turn::Next) == 1);
+    flow.forget();
+    CHECK(frame(Turn::Again) == 0);
+    flow.begin(Turn::Again);
+    CHECK(flow.historyLength() == 0); // nobody looks back
+}
+
 TEST_CASE("a repeat accumulates under one label and forbids reading what is gone") {
     Flow flow;
     flow.begin();
