@@ -94,9 +94,56 @@ void Casters::passThroughHoles(const RTCFilterFunctionNArguments* arguments) {
     }
 }
 
-Casters::Casters(std::shared_ptr<const Scene> scene, const Pose& pose, int threads, Progress* progress)
+Casters::LightExtent::LightExtent(const AreaLight& light) : directional(light.shape == LightShape::Directional) {
+    const glm::mat4 worldFromLight = glm::inverse(lightFromWorld(light));
+    const glm::vec2 half = halfSize(light);
+    for (size_t i = 0; i < 4; ++i) {
+        const glm::vec2 s = half * glm::vec2(i & 1 ? 1 : -1, i & 2 ? 1 : -1);
+        corners[i] =
+            directional ? glm::mat3(worldFromLight) * glm::vec3(s, 1) : glm::vec3(worldFromLight * glm::vec4(s, 0, 1));
+    }
+}
+
+Casters::LightExtent::Side Casters::LightExtent::sideOf(glm::vec3 a, glm::vec3 b, glm::vec3 c) const {
+    const glm::dvec3 from = a, normal = glm::cross(glm::dvec3(b) - from, glm::dvec3(c) - from);
+    const auto isBefore = [&](glm::vec3 corner) {
+        return glm::dot(normal, directional ? glm::dvec3(corner) : glm::dvec3(corner) - from) > 0;
+    };
+    const auto count = std::count_if(corners.begin(), corners.end(), isBefore);
+    return count == 0 ? Side::Behind : count == 4 ? Side::Before : Side::Both;
+}
+
+bool Casters::LightExtent::isWithin(const Bounds& bounds) const {
+    if (directional) return false;
+    Bounds own;
+    for (const glm::vec3& corner : corners) own.add(corner);
+    return glm::all(glm::lessThanEqual(own.min, bounds.max)) && glm::all(glm::greaterThanEqual(own.max, bounds.min));
+}
+
+// Of a triangle with one face that casts, the side on which the whole light lies says once and for all whether it does.
+// Of a closed surface, whoever looks at a light outside meets as many fronts as backs on the way: the fronts that the
+// light sees are enough.
+void Casters::addOpaque(const Primitive& primitive, int front, bool closed, const std::vector<glm::vec3>& posed) {
+    using Side = LightExtent::Side;
+    Bounds bounds;
+    for (const glm::vec3& p : posed) bounds.add(p);
+    const bool enclosed = closed && extent_.isWithin(bounds), bothCast = enclosed || (front == 0 && !closed);
+    const uint32_t first = static_cast<uint32_t>(positions_.size());
+    const uint32_t* corner = source_->indices.data() + primitive.firstIndex;
+    for (uint32_t i = 0; i < primitive.indexCount; i += 3, corner += 3) {
+        const uint32_t a = corner[0], b = corner[front < 0 ? 2 : 1], c = corner[front < 0 ? 1 : 2];
+        const Side side = bothCast ? Side::Before : extent_.sideOf(posed[a], posed[b], posed[c]);
+        if (side == Side::Behind) continue;
+        std::vector<uint32_t>& indices = side == Side::Before || closed ? indices_ : oneSided_;
+        for (const uint32_t vertex : {a, b, c}) indices.push_back(first + vertex);
+    }
+}
+
+Casters::Casters(std::shared_ptr<const Scene> scene, const Pose& pose, const AreaLight& light, int threads,
+                 Progress* progress)
     : source_(std::move(scene))
-    , pose_(pose) {
+    , pose_(pose)
+    , extent_(light) {
     Hash hash;
     std::vector<glm::vec3> posed;
     const auto drawn = [&](bool masked, auto&& take) {
@@ -109,18 +156,15 @@ Casters::Casters(std::shared_ptr<const Scene> scene, const Pose& pose, int threa
                 if (progress) progress->report("posing", 0);
                 posedPositions(*source_, pose_, n, primitive, posed);
                 // Embree's normal is (B − A) × (C − A), as glTF's front is seen unless a mirror shows it.
+                const int front = isMirrored(*source_, pose_, n, primitive) ? -1 : 1;
                 const bool oneSided = !material.doubleSided && !primitive.closed;
-                take(primitive, material, !oneSided ? 0 : isMirrored(*source_, pose_, n, primitive) ? -1 : 1);
+                take(primitive, material, oneSided || primitive.closed ? front : 0);
                 positions_.insert(positions_.end(), posed.begin(), posed.end());
             }
         }
     };
     drawn(false, [&](const Primitive& primitive, const Material&, int front) {
-        const uint32_t first = static_cast<uint32_t>(positions_.size());
-        std::vector<uint32_t>& indices = front == 0 ? indices_ : oneSided_;
-        const uint32_t* corner = source_->indices.data() + primitive.firstIndex;
-        for (uint32_t i = 0; i < primitive.indexCount; i += 3, corner += 3)
-            for (const int c : {0, front < 0 ? 2 : 1, front < 0 ? 1 : 2}) indices.push_back(first + corner[c]);
+        addOpaque(primitive, front, primitive.closed, posed);
     });
     const size_t opaqueVertices = positions_.size();
     drawn(true, [&](const Primitive& primitive, const Material& material, int front) {

@@ -17,7 +17,7 @@ using Clock = std::chrono::steady_clock;
 double secondsSince(Clock::time_point start) { return std::chrono::duration<double>(Clock::now() - start).count(); }
 
 // Another number makes all kept truths old: for a change of what is traced.
-constexpr uint32_t traceVersion = 3;
+constexpr uint32_t traceVersion = 4;
 
 uint64_t hashOf(const TruthInput& input, const TruthSettings& settings, const Casters& casters) {
     Hash hash;
@@ -43,9 +43,9 @@ uint64_t hashOf(const TruthInput& input, const TruthSettings& settings, const Ca
 Truth trace(const TruthInput& input, const TruthSettings& settings, Crew& crew, int threads,
             std::unique_ptr<Casters>& casters, Progress* progress, const std::function<void(Truth)>& show) {
     const Clock::time_point start = Clock::now();
-    if (!casters || !casters->isOf(input.scene, input.pose)) {
+    if (!casters || !casters->isOf(input.scene, input.pose, input.light)) {
         casters.reset();
-        casters = std::make_unique<Casters>(input.scene, input.pose, threads, progress);
+        casters = std::make_unique<Casters>(input.scene, input.pose, input.light, threads, progress);
     }
     const uint64_t hash = hashOf(input, settings, *casters);
     if (settings.cache)

@@ -207,6 +207,28 @@ TEST_CASE("a picture is made again from what its file tells, to the last bit") {
     }
 }
 
+TEST_CASE("the truth and the errors can be captured") {
+    const TemporaryFolder folder;
+    const auto values = [&](std::vector<std::string> more) {
+        more.insert(more.end(), {"--show", "shadow"});
+        captured(folder / "a.png", more);
+        return readPng(folder / "a.png").values;
+    };
+    const std::vector<float> truth = values({"--technique", "hard", "--truth", "alone"});
+    CHECK((values({"--technique", "pcf", "--truth", "alone"}) == truth)); // whatever the technique
+    const std::vector<float> hard = values({"--technique", "hard"});
+    CHECK((hard != truth));
+    // To the left of the line is the technique.
+    const std::vector<float> wipe = values({"--technique", "hard", "--truth", "wipe"});
+    REQUIRE(wipe.size() == hard.size());
+    CHECK(std::equal(wipe.begin(), wipe.begin() + 3 * 70, hard.begin()));
+    CHECK((values({"--technique", "hard", "--truth", "error"}) !=
+           values({"--technique", "hard", "--truth", "error:10"})));
+    requireRefused({"--truth", "errors"}, {"--truth", "'errors'"});
+    requireRefused({"--truth", "error:0"}, {"--truth", "'error:0'", "1..100"});
+    requireRefused({"--truth", "wipe:2"}, {"--truth", "'wipe:2'"});
+}
+
 TEST_CASE("pictures that tell nothing or nonsense are refused in one line") {
     const TemporaryFolder folder;
     const auto like = [&](const nlohmann::ordered_json& facts) {

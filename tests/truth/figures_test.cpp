@@ -39,7 +39,7 @@ TEST_CASE("what the truth costs at 640x480", "[.][figures]") {
     {
         const Clock::time_point start = Clock::now();
         const double processor = processorSeconds();
-        const Casters casters(input.scene, input.pose, 2, nullptr);
+        const Casters casters(input.scene, input.pose, input.light, 2, nullptr);
         WARN("posing, hashing and the hierarchy: " << since(start) << " s, " << processorSeconds() - processor
                                                    << " s of processor time");
     }
@@ -54,9 +54,10 @@ TEST_CASE("what the truth costs at 640x480", "[.][figures]") {
         const auto asked = std::count_if(truth.standardError.begin(), truth.standardError.end(),
                                          [](float error) { return error > 0; });
         WARN(s.scene->name << ": " << s.scene->triangleCount() << " triangles, " << traced << " pixels of "
-                           << truth.classes.size() << " with 256 rays (" << asked << " by rays alone): " << seconds << " s, " << spent
-                           << " s of processor time, " << 1e9 * spent / (256.0 * static_cast<double>(traced))
-                           << " ns a ray; mean penumbra error " << truth.meanPenumbraStandardError);
+                           << truth.classes.size() << " with 256 rays (" << asked << " by rays alone): " << seconds
+                           << " s, " << spent << " s of processor time, "
+                           << 1e9 * spent / (256.0 * static_cast<double>(traced)) << " ns a ray; mean penumbra error "
+                           << truth.meanPenumbraStandardError);
     }
     BackgroundTruth background;
     Clock::time_point start = Clock::now();
