@@ -62,9 +62,9 @@ struct DisplayConstants {
 // Passes of the scene's own: vertices that skins and morph targets move.
 void pose(Flow& flow, const SceneState& state, const Geometry* geometry) {
     if (!geometry || !state.posing()) return;
-    flow.pass(
-        sceneScope,
-        {.stage = Stage::Scene, .name = "pose", .work = PoseVertices{"pose.glsl", geometry, state.poseVersion()}});
+    PoseVertices work{"pose.glsl", geometry, state.poseVersion()};
+    if (state.turn() == Turn::Again) work.defines.push_back({"AGAIN"});
+    flow.pass(sceneScope, {.stage = Stage::Scene, .name = "pose", .work = work});
 }
 
 struct Surfaces {

@@ -85,6 +85,7 @@ void Renderer::begin(const Session& session, Timing timing, Turn turn) {
 
     view_ = sessionView(session, state.bounds());
     if (turn == Turn::Next) past_ = last_;
+    inspected_ = inspection_;
     flow_.begin(turn);
     try {
         frame_ = buildFrame(flow_, session, state, drawn_->geometry_.get(), past_ ? &*past_ : nullptr, inspection_);

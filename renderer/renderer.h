@@ -58,6 +58,7 @@ public:
     // What the next frames are looked into for.
     void inspect(const Inspection& inspection) { inspection_ = inspection; }
     const Inspection& inspection() const { return inspection_; }
+    const Inspection& inspected() const { return inspected_; } // of the last frame begun
 
     const Flow& flow() const { return flow_; }
     const FlowRunner& runner() const { return runner_; }
@@ -109,7 +110,7 @@ private:
     std::shared_ptr<const Texture> picture_;
     View view_;                            // of the frame
     std::optional<LastFrame> past_, last_; // that the frame was built on; that the next one will be
-    Inspection inspection_;
+    Inspection inspection_, inspected_;
     bool software_ = false;
 };
 

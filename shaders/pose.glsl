@@ -50,7 +50,9 @@ void main()
         normal = transformedNormal(blended, normal);
     }
     uint to = 3u * (job.firstPosed + v);
+#ifndef AGAIN // instead of the frame before: its last positions stay
     for (uint i = 0u; i < 3u; ++i) lastPositions[to + i] = positions[to + i];
+#endif
     positions[to] = position.x;
     positions[to + 1u] = position.y;
     positions[to + 2u] = position.z;

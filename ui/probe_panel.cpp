@@ -72,6 +72,7 @@ void ProbePanel::course(const Session& session, ImVec2 size) {
     const std::optional<float> truth = truthAt(session, *probe.pixel(session.size));
     forColumns(plotsOf(session), [&](const ProbePlot& shown, size_t column) {
         if (shown.kind != ProbePlot::Kind::Course) return;
+        ImGui::AlignTextToFramePadding();
         text(colour::muted, shown.title);
         tooltip(shown.help);
         ImGui::SameLine();
@@ -128,7 +129,8 @@ void ProbePanel::drawCourse(const Plot& plot, const ProbePlot& course, size_t co
             return plot.at(samples[k].frame, double{value(k, i - 1)} + sign * value(k, i));
         };
         for (size_t k = 1; k < samples.size(); ++k)
-            list.AddQuadFilled(edge(k - 1, -1), edge(k - 1, 1), edge(k, 1), edge(k, -1), ink);
+            if (std::isfinite(value(k - 1, i)) && std::isfinite(value(k, i)))
+                list.AddQuadFilled(edge(k - 1, -1), edge(k - 1, 1), edge(k, 1), edge(k, -1), ink);
     }
     if (truth && clear(*truth)) {
         const ImVec2 from{plot.low().x, plot.at(1, *truth).y}, to{plot.high().x, from.y};
@@ -142,8 +144,9 @@ void ProbePanel::drawCourse(const Plot& plot, const ProbePlot& course, size_t co
                     list.AddCircleFilled(plot.at(samples[k].frame, value(k, i)), 0.14f * em, ink, 8);
         if (course.series[i].mark != ProbeMark::Line) continue;
         for (size_t k = 1; k < samples.size(); ++k)
-            list.AddLine(plot.at(samples[k - 1].frame, value(k - 1, i)), plot.at(samples[k].frame, value(k, i)), ink,
-                         width);
+            if (std::isfinite(value(k - 1, i)) && std::isfinite(value(k, i)))
+                list.AddLine(plot.at(samples[k - 1].frame, value(k - 1, i)), plot.at(samples[k].frame, value(k, i)),
+                             ink, width);
         if (samples.size() == 1) list.AddCircleFilled(plot.at(samples[0].frame, value(0, i)), 0.2f * em, ink);
     }
 }

@@ -246,6 +246,10 @@ void Workspace::frozenHint(ImVec2 corner, float width) const {
 void Workspace::bar(ImVec2 size) {
     ImGui::PushStyleVar(ImGuiStyleVar_WindowPadding,
                         ImVec2(ImGui::GetStyle().ItemSpacing.x, ImGui::GetStyle().FramePadding.y));
+    // All buttons shall be there with large text, too.
+    const bool narrow = size.x < narrowWidth * ImGui::GetFontSize();
+    const ImVec2 spacing = ImGui::GetStyle().ItemSpacing;
+    ImGui::PushStyleVar(ImGuiStyleVar_ItemSpacing, ImVec2(narrow ? 0.45f * spacing.x : spacing.x, spacing.y));
     if (beginFixed("bar", {0, 0}, size, ImGuiWindowFlags_NoScrollbar | ImGuiWindowFlags_NoScrollWithMouse)) {
         if (ImGui::Button("Open…")) chooser_.open(facts_.scene->file.parent_path());
         tooltip("Ctrl+O");
@@ -278,7 +282,7 @@ void Workspace::bar(ImVec2 size) {
         status();
     }
     ImGui::End();
-    ImGui::PopStyleVar();
+    ImGui::PopStyleVar(2);
 }
 
 void Workspace::status() {

@@ -70,7 +70,7 @@ void Probe::look(const Renderer& renderer, std::span<const ProbePlot> plots, std
     const ivec2 size = renderer.view().size;
     if (size != std::exchange(size_, size)) forget();
     const std::optional<ivec2> pixel = this->pixel(size);
-    if (!pixel || renderer.inspection().probe != pixel || sources_.empty()) return;
+    if (!pixel || renderer.inspected().probe != pixel || sources_.empty()) return;
     Flight& flight = flights_[next_];
     next_ = (next_ + 1) % flights_.size();
     if (flight.fence) { // the oldest; a gap is better than a wait

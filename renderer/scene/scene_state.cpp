@@ -40,7 +40,11 @@ void SceneState::update(size_t clip, double seconds, bool ground, Turn turn) {
     const bool first = !posed_, wasMoving = moving_, again = turn == Turn::Again && !first;
     // A scene without a clip has one pose, and a paused one keeps it.
     const bool still = !first && (scene_->animations.empty() || (clip == clip_ && seconds == seconds_));
-    if (again && still && ground == ground_.has_value()) return;
+    turn_ = again ? Turn::Again : Turn::Next;
+    if (again && still && ground == ground_.has_value()) {
+        posing_ = false; // as it is already
+        return;
+    }
     if (still) {
         if (wasMoving && !again) lastPose_ = pose_;
     } else {

@@ -30,6 +30,7 @@ public:
     bool moving() const { return moving_; }
     // Whether skins or morph targets must be worked out for this frame: after a movement once more, for the motion.
     bool posing() const { return posing_; }
+    Turn turn() const { return turn_; } // of the last update
     const Primitive& primitive(const Drawable& d) const { return scene_->meshes[d.mesh].primitives[d.primitive]; }
     uint64_t poseVersion() const { return poseVersion_; } // another number whenever a vertex has moved or appeared
     const std::vector<Drawable>& drawables() const { return drawables_; }
@@ -48,6 +49,7 @@ private:
     double seconds_ = 0;
     bool posed_ = false; // pose_ is that of the update before
     bool moving_ = false, posing_ = false;
+    Turn turn_ = Turn::Next;
     uint64_t poseVersion_ = 0;
     std::vector<Drawable> drawables_;
     std::vector<Occluder> occluders_;
