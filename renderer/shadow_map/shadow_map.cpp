@@ -214,9 +214,6 @@ MapFit fitMap(const AreaLight& light, std::span<const Occluder> occluders, const
         const Window window = project(seen, fit, half, directional).grown(glm::max(sees, vec2(0)));
         receivers.add(window.min), receivers.add(window.max);
     });
-        fprintf(stderr, "near %g far %g nearest %g cast %g %g %g %g recv %g %g %g %g\n", fit.near, fit.far, nearest,
-                casters.min.x, casters.min.y, casters.max.x, casters.max.y, receivers.min.x, receivers.min.y,
-                receivers.max.x, receivers.max.y);
     fit.window = casters.intersected(receivers);
     if (!directional) {
         const vec2 widest = half + widestTangent * fit.reference;
