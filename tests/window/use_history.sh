@@ -13,11 +13,15 @@ look() { "$person" look "$window" $1 | cksum; }
 frozen() { # whether the hint at the view's upper right says so: only then it reaches that far, in the accent's colour
     (($("$person" look "$window" 722 44 60 14 | tr -s ' ' '\n' | grep -cE '^(d.|e.)(a.|b.)(5.|6.)$') > 8))
 }
-view="250 150 400 150"
+view="250 100 400 150"
 
 start two-boxes --technique temporal --size 1280x720 --set start=hard --set neighbourhood=off --set map-size=256
+told=$(look "$beside")
+tells() { [[ $(look "$beside") != "$told" ]]; }
+hand key p # probes the pixel under the pointer, too
 hand key shift+n
 until_ frozen
+tells || fail "the probe tells nothing"
 last=$(picture) || fail "no picture after 16 frames"
 sixteen=$last
 keeps frames 8
@@ -35,16 +39,11 @@ before=$(look "$view")
 changed() { [[ $(look "$view") != "$before" ]]; }
 until_ changed
 
-# --- the probe
-hand mousemove 480 260
-hand key p
-told=$(look "$beside")
-tells() { [[ $(look "$beside") != "$told" ]]; }
-until_ tells
+# --- another pixel: frozen, too, it is drawn again and tells its numbers
 hand key k
 until_ frozen
 told=$(look "$beside")
-press 250 250 # another pixel: frozen, too, it is drawn again and tells its numbers
+press 250 250
 until_ tells
 alive "the probe"
 
