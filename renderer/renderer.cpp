@@ -71,7 +71,8 @@ void Renderer::render(const Session& session, Timing timing) {
     advance(std::numeric_limits<double>::infinity());
 }
 
-void Renderer::begin(const Session& session, Timing timing) {
+// Takes over the session's scene as it is at its time.
+void Renderer::adopt(const Session& session) {
     if (!drawn_ || drawn_->scene_ != session.scene) {
         if (!next_ || next_->scene_ != session.scene) next_.emplace(session.scene);
         drawn_ = std::move(next_);
@@ -81,11 +82,33 @@ void Renderer::begin(const Session& session, Timing timing) {
     SceneState& state = drawn_->state_;
     state.update(session.clip, session.time, session.ground);
     drawn_->geometry_->update(state);
+}
 
-    view_ = sessionView(session, state.bounds());
+std::vector<LightLayer> Renderer::renderFromLight(const Session& session, int size, int layers) {
+    adopt(session);
+    frame_.reset();
+    picture_.reset();
+    last_.reset();
     flow_.begin();
     try {
-        frame_ = buildFrame(flow_, session, state, drawn_->geometry_.get(), last_ ? &*last_ : nullptr);
+        const std::vector<LightLayer> drawn =
+            buildLightLayers(flow_, session, drawn_->state_, drawn_->geometry_.get(), size, layers);
+        flow_.refuseAbove(session.textureLimit);
+        runner_.begin(flow_, Timing::Off);
+        runner_.step(flow_, std::numeric_limits<double>::infinity());
+        return drawn;
+    } catch (...) {
+        fail();
+        throw;
+    }
+}
+
+void Renderer::begin(const Session& session, Timing timing) {
+    adopt(session);
+    view_ = sessionView(session, drawn_->state_.bounds());
+    flow_.begin();
+    try {
+        frame_ = buildFrame(flow_, session, drawn_->state_, drawn_->geometry_.get(), last_ ? &*last_ : nullptr);
         flow_.refuseAbove(session.textureLimit);
         runner_.begin(flow_, timing);
     } catch (...) {
