@@ -98,17 +98,18 @@ BiasTarget biasTarget(MomentFormat format, DepthSign sign) {
     return {{0, even, 0, even}, even, even * (1 - even)};
 }
 
+double planeDeviation(const ParameterSet& set) {
+    const Gaussian gaussian(static_cast<int>(set.at("kernel").value()), set.at("sigma").value());
+    constexpr double bilinear = 0.25; // variance at most
+    return std::sqrt(gaussian.variance() + bilinear);
+}
+
 glm::vec2 depthScale(DepthSign sign) { return sign == DepthSign::Signed ? glm::vec2(2, -1) : glm::vec2(1, 0); }
 
 } // namespace
 
-double planeBias(const ParameterSet& set) { return planeBias(set, 0.5); }
-
-double planeBias(const ParameterSet& set, double deviations) {
-    const Gaussian gaussian(static_cast<int>(set.at("kernel").value()), set.at("sigma").value());
-    constexpr double bilinear = 0.25; // variance at most
-    return deviations * std::sqrt(gaussian.variance() + bilinear);
-}
+double planeBias(const ParameterSet& set) { return 0.5 * planeDeviation(set); }
+double steeperBias(const ParameterSet& set) { return 0.8 * planeDeviation(set); }
 
 bool isHalf(const ParameterSet& set) { return set.at("format").value() == double(FloatFormat::Float16); }
 

@@ -133,7 +133,7 @@ TEST_CASE("the same command gives the same errors, to the last digit") {
 }
 
 TEST_CASE("the error of the irradiance ranks bounds by what they know, against filtering of the same kernel") {
-    const Result run = runProgram({"measure", "two-boxes", "--error", "irradiance", "--techniques",
+    const Result run = runProgram({"measure", "overlapping-occluders", "--error", "irradiance", "--techniques",
                                    "none,pcf,vsm,msm-hamburger,msm-hausdorff,msm-trigonometric,msm-six", "--set",
                                    "map-size=128", "--set", "pcf.shape=gaussian", "--sweep", "pcf.kernel=9", "--json"});
     INFO(run.errors);

@@ -357,6 +357,26 @@ TEST_CASE("the bound of six powers is what linear programming finds, sharper tha
     CHECK(worst < 1e-6);
 }
 
+TEST_CASE("layers of a square wave add up to its series") {
+    // S(x) at golden places: its first maximum and first trough for 4 and 16 terms, and ½ at 0.
+    const auto series = [](double z, double t, int terms) {
+        double sum = 0.5;
+        for (int layer = 0; layer < (terms + 1) / 2; ++layer)
+            sum += f64::squareWaveAt(f64::squareWaveOf(z, layer), t, layer, terms, 0.0);
+        return sum;
+    };
+    for (const double t : {0.0, 0.3, 0.7}) {
+        CAPTURE(t);
+        CHECK(series(t, t, 16) == Approx(0.5).margin(1e-6));
+        CHECK(series(t + 1.0 / 2, t, 1) == Approx(1.13661977237).margin(1e-6));
+        CHECK(series(t + 1.0 / 8, t, 4) == Approx(1.09211256669).margin(1e-6));
+        CHECK(series(t + 1.0 / 4, t, 4) == Approx(0.945870937525).margin(1e-6));
+        CHECK(series(t + 1.0 / 32, t, 16) == Approx(1.08965270445).margin(1e-6));
+        CHECK(series(t + 1.0 / 16, t, 16) == Approx(0.951084900927).margin(1e-6));
+        CHECK(series(t - 1.0 / 32, t, 16) == Approx(1 - 1.08965270445).margin(1e-6));
+    }
+}
+
 TEST_CASE("variance and warped variance bounds are Cantelli's inequality") {
     // Half of the depths at 0.25 and half at 0.75.
     const dvec2 b(0.5, 0.3125);
@@ -477,5 +497,24 @@ TEST_CASE("no bound is above the true shadow") {
         check(hamburger, hausdorff + 1e-6); // knowing more allows more
         const dvec4 t = biased(d.mean([](double z) { return f64::trigonometricOf(z); }), alpha, dvec4(0));
         check(f64::trigonometricBound(t, z_f, alpha), truth + alpha + 1e-5);
+    }
+}
+
+TEST_CASE("no slice of the depth range bounds ψ from above") {
+    Distributions distributions(10);
+    for (int i = 0; i < 5000; ++i) {
+        const Distribution d = distributions.next();
+        const double z_f = distributions.fragment(d), truth = d.inFront(z_f + 1e-6);
+        CAPTURE(i, z_f);
+        const auto check = [&](double bound) {
+            if (bound > truth + 1e-6) CHECK(bound <= truth);
+        };
+        const double slices = 1 + distributions.below(8), overlap = 0.5 * distributions.unit();
+        for (int pair = 0; 2 * pair < slices; ++pair) {
+            const dvec4 s = d.mean([&](double z) { return f64::slicesOf(z, pair, slices, overlap); });
+            const dvec4 own = f64::slicesOf(z_f, pair, slices, overlap);
+            check(f64::varianceBound(dvec2(s.x, s.y), own.x, 1e-12));
+            check(f64::varianceBound(dvec2(s.z, s.w), own.z, 1e-12));
+        }
     }
 }
