@@ -131,6 +131,10 @@ constexpr ValueOption measureOptions[] = {
      "after a rest: camera-pan, camera-jump, caster-moves, caster-stops, light-moves or light-grows; every frame has a "
      "truth of its own",
      &Options::motion},
+    {"--error", "truth|irradiance",
+     "what errors are of: ψ in the picture against the truth, or the light's power on all surfaces that face it, "
+     "against percentage-closer filtering with the same kernel",
+     &Options::error},
     {"--against", "ray|samples", "the truth: traced rays, or shadow maps from many points of the light",
      &Options::against},
     {"--shard", "I/N", "only the I-th of N parts of the combinations, for N machines", &Options::shard},

@@ -24,8 +24,8 @@ struct Options {
     std::optional<std::string> output, buffer, truth; // capture
     std::optional<std::string> view;
     std::optional<int> frames;
-    std::optional<int> layer, level;                                     // of the buffer
-    std::optional<std::string> techniques, path, motion, against, shard; // measure
+    std::optional<int> layer, level;                                            // of the buffer
+    std::optional<std::string> techniques, path, motion, error, against, shard; // measure
     std::optional<std::string> budgetMs, budgetRmse, free;
     std::vector<std::string> sweeps, merged;
     std::optional<int> repeat, samples;

@@ -10,6 +10,7 @@
 #include "app/truth_cache.h"
 #include "renderer/core/hash.h"
 #include "renderer/measure/budget.h"
+#include "renderer/measure/irradiance.h"
 #include "renderer/measure/measurement.h"
 
 #include <fmt/format.h>
@@ -301,8 +302,10 @@ void chooseTruth(MeasurementPlan& plan, const Options& options, TruthCache& cach
 }
 
 // What all measurements tell first.
-Json heading(const Renderer& renderer, const Options& options, const Session& session, const MeasurementPlan& plan) {
-    const std::vector<std::string> doubts = doubtsAboutTimes(renderer, false);
+Json heading(const Renderer& renderer, const Options& options, const Session& session, const MeasurementPlan& plan,
+             bool timed = true) {
+    std::vector<std::string> doubts;
+    if (timed) doubts = doubtsAboutTimes(renderer, false);
     for (const std::string& doubt : doubts) fmt::print(stderr, "note: {}\n", doubt);
     return {{"program", "penumbra"},
             {"version", PENUMBRA_VERSION},
@@ -326,11 +329,17 @@ void addResults(Json& document, const Options& options, const Measurement& measu
         document["results"].push_back(resultJson(result, truth, options.motion.has_value()));
 }
 
-int finish(const HeadlessContext& context, const Measurement& measurement, size_t rows) {
+int finish(const HeadlessContext& context, bool complete, size_t done, size_t rows) {
     for (const std::string& message : context.messages()) fmt::print(stderr, "note: OpenGL: {}\n", message);
-    if (measurement.complete) return 0;
-    fmt::print(stderr, "penumbra: interrupted; {} of {} rows are kept\n", measurement.results.size(), rows);
+    if (complete) return 0;
+    fmt::print(stderr, "penumbra: interrupted; {} of {} rows are kept\n", done, rows);
     return 1;
+}
+
+// Refuses options that mean nothing together with `name`.
+void refuseTogether(const char* name, std::initializer_list<std::pair<const char*, bool>> strangers) {
+    for (const auto& [stranger, given] : strangers)
+        if (given) throw InputError(fmt::format("{} and {}: one of them was expected", name, stranger));
 }
 
 // --- a budget ------------------------------------------------------------------------------------------------------
@@ -345,13 +354,14 @@ std::optional<Budget> budgetOf(const Options& options) {
     if (options.budgetMs && options.budgetRmse)
         throw InputError("--budget-ms and --budget-rmse: one of them was expected");
     if (!options.free) throw InputError(fmt::format("{}: --free NAME,... was expected with it", name));
-    const std::pair<const char*, bool> strangers[] = {
-        {"--sweep", !options.sweeps.empty()},     {"--path", options.path.has_value()},
-        {"--motion", options.motion.has_value()}, {"--shard", options.shard.has_value()},
-        {"--merge", !options.merged.empty()},     {"--frames", options.frames.has_value()},
-        {"--repeat", options.repeat.has_value()}, {"--play", options.play}};
-    for (const auto& [stranger, given] : strangers)
-        if (given) throw InputError(fmt::format("{} and {}: one of them was expected", name, stranger));
+    refuseTogether(name, {{"--sweep", !options.sweeps.empty()},
+                          {"--path", options.path.has_value()},
+                          {"--motion", options.motion.has_value()},
+                          {"--shard", options.shard.has_value()},
+                          {"--merge", !options.merged.empty()},
+                          {"--frames", options.frames.has_value()},
+                          {"--repeat", options.repeat.has_value()},
+                          {"--play", options.play}});
     const std::string& text = options.budgetMs ? *options.budgetMs : *options.budgetRmse;
     Budget budget{options.budgetMs ? Bound::Cost : Bound::Error, 0};
     const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), budget.limit);
@@ -421,13 +431,68 @@ int searchBudget(const Options& options, const Budget& budget) {
                           {"certain", search.proposal ? Json(search.certain) : Json()}};
     markFront(document);
     print(options, document);
-    return finish(context, measurement, expected);
+    return finish(context, measurement.complete, measurement.results.size(), expected);
+}
+
+// --- the error of the irradiance -----------------------------------------------------------------------------------
+
+bool wantsIrradiance(const Options& options) {
+    static constexpr std::string_view names[] = {"truth", "irradiance"};
+    const std::string_view name = options.error ? std::string_view(*options.error) : names[0];
+    if (std::find(std::begin(names), std::end(names), name) == std::end(names))
+        throw InputError(
+            fmt::format("--error: '{}' is not one of {}{}", name, fmt::join(names, ", "), suggestion(name, names)));
+    if (name == "truth") return false;
+    refuseTogether("--error irradiance", {{"--against", options.against.has_value()},
+                                          {"--samples", options.samples.has_value()},
+                                          {"--budget-ms", options.budgetMs.has_value()},
+                                          {"--budget-rmse", options.budgetRmse.has_value()},
+                                          {"--free", options.free.has_value()},
+                                          {"--path", options.path.has_value()},
+                                          {"--motion", options.motion.has_value()},
+                                          {"--frames", options.frames.has_value()},
+                                          {"--repeat", options.repeat.has_value()},
+                                          {"--play", options.play}});
+    return true;
+}
+
+Json irradianceJson(const IrradianceResult& result) {
+    Json json = {{"row", result.setting.place},
+                 {"technique", result.setting.card->id},
+                 {"parameters", parametersJson(result.setting)},
+                 {"error", nullptr}};
+    if (result.errors) {
+        const IrradianceErrors& e = *result.errors;
+        json["error"] = {{"against", "pcf"},   {"mean_abs", e.mean},       {"bias", e.bias},
+                         {"above", e.above},   {"shadowed", e.shadowed},   {"surfaces", e.surfaces},
+                         {"layers", e.layers}, {"last_layer", e.lastLayer}};
+    }
+    if (!result.trouble.empty()) json["trouble"] = result.trouble;
+    return json;
+}
+
+int measureIrradiance(const Options& options, Session session, std::vector<Setting> settings) {
+    const size_t rows = settings.size();
+    const HeadlessContext context;
+    Json document = heading(Renderer(), options, session, {}, false);
+    document["metric"] = "irradiance";
+    IrradianceMeasurement measurement;
+    {
+        ProgressLine line;
+        measurement = penumbra::measureIrradiance(std::move(session), std::move(settings), line.progress());
+    }
+    document["complete"] = measurement.complete;
+    document["results"] = Json::array();
+    for (const IrradianceResult& result : measurement.results) document["results"].push_back(irradianceJson(result));
+    print(options, document);
+    return finish(context, measurement.complete, measurement.results.size(), rows);
 }
 
 } // namespace
 
 int measure(const Options& options) {
     if (options.json && options.csv) throw InputError("--json and --csv: one of them was expected");
+    const bool irradiance = wantsIrradiance(options);
     if (const std::optional<Budget> budget = budgetOf(options)) return searchBudget(options, *budget);
     if (!options.merged.empty()) {
         print(options, mergeMeasurements(options.merged));
@@ -440,6 +505,7 @@ int measure(const Options& options) {
     others.assignments.clear();
     Shot shot;
     Session session = makeSession(others, shot);
+    if (irradiance) return measureIrradiance(options, std::move(session), std::move(settings));
     session.time -= (shot.frames - 1) * session.timeStep; // that of the first frame
     MeasurementPlan plan = makePlan(options, session);
     TruthFiles cache;
@@ -456,7 +522,7 @@ int measure(const Options& options) {
     addRatios(measurement, document["results"]);
     markFront(document);
     print(options, document);
-    return finish(context, measurement, rows);
+    return finish(context, measurement.complete, measurement.results.size(), rows);
 }
 
 } // namespace penumbra

@@ -190,7 +190,7 @@ Json readDocument(const std::string& file) {
 }
 
 // What parts of one measurement have in common.
-constexpr const char* common[] = {"/version", "/scene", "/size", "/view/hash", "/frames", "/repeat"};
+constexpr const char* common[] = {"/version", "/metric", "/scene", "/size", "/view/hash", "/frames", "/repeat"};
 
 } // namespace
 
@@ -243,7 +243,42 @@ std::string proposalText(const Json& document) {
 
 } // namespace
 
+namespace {
+
+std::string irradianceTable(const Json& document) {
+    static constexpr Column figures[] = {{"error %", "/error/mean_abs", "{:.3f}", 100},
+                                         {"bias %", "/error/bias", "{:+.3f}", 100},
+                                         {"above %", "/error/above", "{:.3f}", 100},
+                                         {"shadowed %", "/error/shadowed", "{:.2f}", 100}};
+    std::vector<std::vector<std::string>> rows{{"technique", "parameters"}};
+    for (const Column& column : figures) rows[0].push_back(column.title);
+    std::string troubles, seen;
+    for (const Json& result : document["results"]) {
+        rows.push_back({plain(result["technique"]), parameterText(result)});
+        for (const Column& column : figures) rows.back().push_back(cell(result, column));
+        if (const Json& trouble = at(result, "/trouble"); trouble.is_string())
+            troubles += fmt::format("{}: {}\n", rowText(result), plain(trouble));
+        if (const Json& error = at(result, "/error"); error.is_object() && seen.empty()) {
+            seen = fmt::format(", {} texels of surfaces in {} layers", plain(at(error, "/surfaces")),
+                               plain(at(error, "/layers")));
+            if (const double last = numberAt(error, "/last_layer"); last > 0)
+                seen += fmt::format(", {:.2g} % of them in the last one; what is behind is not counted", 100 * last);
+        }
+    }
+    return fmt::format("{}: a light from a direction{}\n\n", plain(document["scene"]), seen) + aligned(rows, 2) +
+           "\nError is the mean of |ψ − F| over all surfaces that face the light, F by percentage-closer filtering "
+           "with "
+           "the same Gaussian;\nbias is that of ψ − F, above that of its positive part, which no bound has but for its "
+           "biases; shadowed is that of F.\nPeters and Klein 2015, section 3.2, in scenes of their own: 2.19 % for "
+           "four "
+           "moments, 1.93 % for trigonometric ones.\n" +
+           troubles;
+}
+
+} // namespace
+
 std::string measurementTable(const Json& document) {
+    if (at(document, "/metric") == "irradiance") return irradianceTable(document);
     std::vector<std::vector<std::string>> rows{{"", "technique", "parameters"}};
     for (const Column& column : columns) rows[0].push_back(column.title);
     rows[0].push_back("reads");

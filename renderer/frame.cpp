@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "renderer/frame.h"
 
-#include "renderer/shadow_map/shadow_map.h"
+#include "renderer/surfaces.h"
 
 #include <algorithm>
 #include <cmath>
@@ -9,25 +9,10 @@
 namespace penumbra {
 namespace {
 
-constexpr Scope sceneScope{.instance = {}, .owner = "scene"};
 constexpr Scope frameScope{};
 constexpr Scope truthScope{.instance = {}, .owner = "truth"};
 constexpr Scope compareScope{.instance = {}, .owner = "compare"};
 
-constexpr Channel depthChannels[] = {{"depth", "d", "distance along the view axis; 0: no surface", Unit::Metres}};
-constexpr Channel normalChannels[] = {{"geometric-x", "n", "geometric normal, world, octahedral", Unit::None, -1, 1},
-                                      {"geometric-y", "n", "geometric normal, world, octahedral", Unit::None, -1, 1},
-                                      {"shading-x", "n", "interpolated normal, world, octahedral", Unit::None, -1, 1},
-                                      {"shading-y", "n", "interpolated normal, world, octahedral", Unit::None, -1, 1}};
-constexpr Channel colourChannels[] = {
-    {"red", "", "square root of the linear base colour", Unit::None, 0, 1},
-    {"green", "", "square root of the linear base colour", Unit::None, 0, 1},
-    {"blue", "", "square root of the linear base colour", Unit::None, 0, 1},
-    {"own", "", "share of it that shines by itself: emissive or unlit", Unit::None, 0, 1}};
-constexpr Channel motionChannels[] = {{"x", "", "last frame's place minus this frame's", Unit::Pixels},
-                                      {"y", "", "last frame's place minus this frame's", Unit::Pixels},
-                                      {"depth", "", "last frame's depth minus this frame's", Unit::Metres}};
-constexpr Channel zChannels[] = {{"z", "", "the rasteriser's own depth; 1: near plane, 0: far plane"}};
 constexpr Channel litChannels[] = {{"red", "", "reflected light, linear"},
                                    {"green", "", "reflected light, linear"},
                                    {"blue", "", "reflected light, linear"}};
@@ -41,11 +26,6 @@ constexpr Channel displayChannels[] = {{"red", "", "as shown, sRGB", Unit::None,
                                        {"green", "", "as shown, sRGB", Unit::None, 0, 1},
                                        {"blue", "", "as shown, sRGB", Unit::None, 0, 1}};
 
-struct GeometryConstants {
-    ViewBlock view;
-    mat4 lastClipFromWorld;
-};
-
 struct LightingConstants {
     ViewBlock view;
     mat4 lightFromWorld;
@@ -58,46 +38,6 @@ struct DisplayConstants {
     vec4 halves;        // x = first column that shows the other image, y = the column where that image begins
     vec4 gain;          // x = factor on errors
 };
-
-// Passes of the scene's own: vertices that skins and morph targets move.
-void pose(Flow& flow, const SceneState& state, const Geometry* geometry) {
-    if (!geometry || !state.posing()) return;
-    PoseVertices work{"pose.glsl", geometry, state.poseVersion()};
-    if (state.turn() == Turn::Again) work.defines.push_back({"AGAIN"});
-    flow.pass(sceneScope, {.stage = Stage::Scene, .name = "pose", .work = work});
-}
-
-struct Surfaces {
-    GeometryBuffer buffer;
-    Image colour;
-};
-
-Surfaces drawSurfaces(Flow& flow, const View& view, const SceneState& state, const Geometry* geometry,
-                      const glm::mat4& lastClipFromWorld) {
-    const Extent extent{view.size.x, view.size.y};
-    Draw draw{.shader = "geometry_buffer.glsl",
-              .geometry = geometry,
-              .poseVersion = state.poseVersion(),
-              .faces = Faces::Shown,
-              .textured = true,
-              .reversedDepth = true};
-    PassSpec pass{.stage = Stage::Scene,
-                  .name = "geometry-buffer",
-                  .writes = {{"depth", Format::R32F, extent, depthChannels},
-                             {"normal", Format::RGBA16Snorm, extent, normalChannels},
-                             {"colour", Format::RGBA8, extent, colourChannels}},
-                  .constants = GeometryConstants{viewBlock(view), lastClipFromWorld}};
-    draw.defines.push_back({"COLOUR", 2});
-    if (state.moving()) { // a still scene's motion follows from the two views
-
-        draw.defines.push_back({"MOTION", 3});
-        pass.writes.push_back({"motion", Format::RGBA16F, extent, motionChannels});
-    }
-    pass.writes.push_back({"z-buffer", Format::Depth32F, extent, zChannels});
-    pass.work = draw;
-    const Flow::Outputs images = flow.pass(sceneScope, pass);
-    return {{images[0], images[1], state.moving() ? std::optional(images[3]) : std::nullopt}, images[2]};
-}
 
 Image shade(Flow& flow, Scope scope, const Session& session, const View& view, const Surfaces& surfaces, Image shadow) {
     const AreaLight& light = session.light;
@@ -190,7 +130,7 @@ Frame buildFrame(Flow& flow, const Session& session, const SceneState& state, co
     const glm::ivec2 margin = marginOf(session.size);
     const View view = grown(sessionView(session, state.bounds()), margin);
     const View lastView = last ? grown(last->view, marginOf(last->view.size)) : view;
-    pose(flow, state, geometry);
+    poseVertices(flow, state, geometry);
     const Surfaces surfaces = drawSurfaces(flow, view, state, geometry, lastView.clipFromWorld);
     const Inputs inputs{view,
                         session.light,
@@ -233,6 +173,22 @@ Frame buildFrame(Flow& flow, const Session& session, const SceneState& state, co
         return show(flow, session, seen(shadow, own), seen(*other, others));
     };
     return {shadow, rival, display(), surfaces.buffer.depth};
+}
+
+std::vector<LightLayer> buildLightLayers(Flow& flow, const Session& session, const SceneState& state,
+                                         const Geometry* geometry, int size, int layers) {
+    const View view = lightsView(lightView(session.light, state.occluders(), {.size = size}), state.occluders());
+    session.techniques.parameters().refuseBeyondLimits();
+    poseVertices(flow, state, geometry);
+    std::vector<LightLayer> drawn;
+    for (const GeometryBuffer& buffer : drawLightLayers(flow, view, state, geometry, layers)) {
+        const Inputs inputs{view,          session.light, buffer, geometry, state.poseVersion(), state.occluders(),
+                            session.frame, session.seed};
+        // Maps and what is filtered of them are alike for all layers and made once.
+        const Scope scope{lightLayerName(static_cast<int>(drawn.size())), session.techniques.card().id};
+        drawn.push_back({buffer.depth, session.techniques.technique().build(flow, scope, inputs)});
+    }
+    return drawn;
 }
 
 } // namespace penumbra

@@ -20,6 +20,17 @@ struct Frame {
 Frame buildFrame(Flow& flow, const Session& session, const SceneState& state, const Geometry* geometry,
                  const LastFrame* last, const Inspection& inspection = {});
 
+// A layer of what a directional light sees, and ψ there; see surfaces.h.
+struct LightLayer {
+    Image depth; // 0: no surface
+    Image shadow;
+};
+
+// Appends the passes of the session's technique on the surfaces that its light sees, a pixel for each texel of a map of
+// `size` texels along a side.
+std::vector<LightLayer> buildLightLayers(Flow& flow, const Session& session, const SceneState& state,
+                                         const Geometry* geometry, int size, int layers);
+
 // The view of a session: near and far planes hold the whole scene.
 View sessionView(const Session& session, const Bounds& bounds);
 

@@ -72,7 +72,8 @@ void Renderer::render(const Session& session, Timing timing, Turn turn) {
     advance(std::numeric_limits<double>::infinity());
 }
 
-void Renderer::begin(const Session& session, Timing timing, Turn turn) {
+// Takes over the session's scene as it is at its time.
+void Renderer::adopt(const Session& session, Turn turn) {
     if (!drawn_ || drawn_->scene_ != session.scene) {
         if (!next_ || next_->scene_ != session.scene) next_.emplace(session.scene);
         drawn_ = std::move(next_);
@@ -82,13 +83,37 @@ void Renderer::begin(const Session& session, Timing timing, Turn turn) {
     SceneState& state = drawn_->state_;
     state.update(session.clip, session.time, session.ground, turn);
     drawn_->geometry_->update(state);
+}
 
-    view_ = sessionView(session, state.bounds());
+std::vector<LightLayer> Renderer::renderFromLight(const Session& session, int size, int layers) {
+    adopt(session, Turn::Next);
+    frame_.reset();
+    picture_.reset();
+    past_.reset();
+    last_.reset();
+    flow_.begin();
+    try {
+        const std::vector<LightLayer> drawn =
+            buildLightLayers(flow_, session, drawn_->state_, drawn_->geometry_.get(), size, layers);
+        flow_.refuseAbove(session.textureLimit);
+        runner_.begin(flow_, Timing::Off);
+        runner_.step(flow_, std::numeric_limits<double>::infinity());
+        return drawn;
+    } catch (...) {
+        fail();
+        throw;
+    }
+}
+
+void Renderer::begin(const Session& session, Timing timing, Turn turn) {
+    adopt(session, turn);
+    view_ = sessionView(session, drawn_->state_.bounds());
     if (turn == Turn::Next) past_ = last_;
     inspected_ = inspection_;
     flow_.begin(turn);
     try {
-        frame_ = buildFrame(flow_, session, state, drawn_->geometry_.get(), past_ ? &*past_ : nullptr, inspection_);
+        frame_ =
+            buildFrame(flow_, session, drawn_->state_, drawn_->geometry_.get(), past_ ? &*past_ : nullptr, inspection_);
         flow_.refuseAbove(session.textureLimit);
         runner_.begin(flow_, timing, turn);
     } catch (...) {

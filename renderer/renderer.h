@@ -50,6 +50,8 @@ public:
     // the frame before, but picture() is whole.
     void begin(const Session& session, Timing timing, Turn turn = Turn::Next);
     bool advance(double milliseconds);
+    // Draws ψ on what a directional light sees instead of a frame (frame.h): there are images but no picture.
+    std::vector<LightLayer> renderFromLight(const Session& session, int size, int layers);
     bool underWay() const { return runner_.underWay(); }
     // The next session that shows this scene finds it ready; a scene that nobody prepared is prepared by render().
     void take(PreparedScene prepared) { next_ = std::move(prepared); }
@@ -99,6 +101,7 @@ public:
 
 private:
     Renderer(std::string driver, std::shared_ptr<ProgramLibrary> programs);
+    void adopt(const Session& session, Turn turn);
     void fail();
 
     std::string driver_; // first: its initialisation refuses what is not OpenGL 4.5

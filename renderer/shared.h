@@ -15,7 +15,7 @@ using uint = unsigned int;
 #include "shaders/shared/inspect.glsl.h"
 #include "shaders/shared/view.glsl.h"
 
-static_assert(sizeof(ViewBlock) == 144 && sizeof(LightViewBlock) == 192);
+static_assert(sizeof(ViewBlock) == 176 && sizeof(LightViewBlock) == 192);
 static_assert(sizeof(SourceBlock) == 64 && sizeof(PaintBlock) == 112 && sizeof(MeasureBlock) == 96 &&
               sizeof(SampleBlock) == 80);
 

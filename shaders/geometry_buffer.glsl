@@ -56,6 +56,9 @@ flat in vec4 emissive_unlit;
 #ifdef VERTEX_COLOURS
 in vec4 vertexColour;
 #endif
+#ifdef PEELED
+uniform sampler2D nearer; // eye depth of the layer before this one, 0: no surface
+#endif
 layout(location = 0) out float depth;
 layout(location = 1) out vec4 normal;
 #ifdef COLOUR
@@ -68,6 +71,11 @@ layout(location = MOTION) out vec4 motion;
 #endif
 void main()
 {
+#ifdef PARALLEL
+    float eyeDepth = mix(view.size.w, view.size.z, gl_FragCoord.z);
+#else
+    float eyeDepth = 1.0 / gl_FragCoord.w; // clip w is the eye depth
+#endif
     vec3 base = baseColour.rgb;
 #ifdef VERTEX_COLOURS
     base *= vertexColour.rgb;
@@ -84,14 +92,18 @@ void main()
     if (alpha < baseColour.w) discard;
 #endif
     // Directions only: the octahedron needs no unit length.
+#ifdef PARALLEL
+    vec3 towardsEye = -view.rayCorner.xyz;
+#else
     vec3 towardsEye = view.eyeWorld.xyz - positionWorld;
+#endif
     vec3 geometric = cross(dFdx(positionWorld), dFdy(positionWorld));
     if (dot(abs(geometric), vec3(1.0)) == 0.0) geometric = towardsEye; // needle triangles have no derivative
     geometric *= dot(geometric, towardsEye) < 0.0 ? -1.0 : 1.0;
     vec3 shading = normalWorld * (dot(normalWorld, geometric) < 0.0 ? -1.0 : 1.0);
     if (dot(abs(shading), vec3(1.0)) == 0.0) shading = geometric;
     normal = vec4(octahedralFromDirection(geometric), octahedralFromDirection(shading));
-    depth = 1.0 / gl_FragCoord.w; // clip w is the eye depth
+    depth = eyeDepth;
 #ifdef COLOUR
     vec3 shown = min(base + emissive_unlit.xyz, 1.0);
     vec3 glow = max(emissive_unlit.xyz, emissive_unlit.w * shown);
@@ -100,6 +112,11 @@ void main()
 #endif
 #ifdef MOTION
     motion = vec4((lastClip.xy / lastClip.w - clip.xy / clip.w) * 0.5 * view.size.xy, lastClip.w - clip.w, 0.0);
+#endif
+#ifdef PEELED
+    // Beyond rounding: the same surface must not come again, nor anything where there was none.
+    float before = texelFetch(nearer, ivec2(gl_FragCoord.xy), 0).x;
+    if (before == 0.0 || eyeDepth <= before + 1e-6 * view.size.w) discard;
 #endif
 }
 #endif

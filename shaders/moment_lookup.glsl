@@ -5,7 +5,11 @@
 #include "shadow_lookup.glsl"
 #include "lib/moments.glsl"
 
+#ifdef LAYERED
+uniform sampler2DArray moments;
+#else
 uniform sampler2D moments;
+#endif
 
 struct MomentLookup {
     vec2 place;  // of the receiver, in texture coordinates of the map
@@ -19,7 +23,7 @@ MomentLookup findMoments(Receiver r, float constantBias, float slopeTexels)
 {
     Lookup l = makeLookup(r, constantBias, slopeTexels, false, false);
     MomentLookup m;
-    m.place = l.texel * lightView.light.w;
+    m.place = (l.texel + lookup.border_perTexel.x) * lookup.border_perTexel.y;
     m.depth = fma(l.compared - l.offset, lookup.depth_exponents.x, lookup.depth_exponents.y);
     bool below = directional ? r.facing <= 0.0 : r.facing >= 0.0;
     bool outside = any(notEqual(m.place, clamp(m.place, 0.0, 1.0))) || !(abs(m.depth) < 1e30);
@@ -28,11 +32,16 @@ MomentLookup findMoments(Receiver r, float constantBias, float slopeTexels)
     return m;
 }
 
-vec4 momentsAt(vec2 place)
+vec4 momentsAt(vec2 place, int layer)
 {
+#ifdef LAYERED
+    vec4 stored = textureLod(moments, vec3(place, layer), 0.0);
+#else
     vec4 stored = textureLod(moments, place, 0.0);
+#endif
     return lookup.momentsFromStored * stored + lookup.momentsOffset;
 }
+vec4 momentsAt(vec2 place) { return momentsAt(place, 0); }
 
 // Of the texel so many beside the kernel's centre.
 float kernelWeight(int i) { return lookup.weights[abs(i) >> 2][abs(i) & 3]; }

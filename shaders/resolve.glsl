@@ -60,7 +60,8 @@ Receiver findReceiver(float normalOffset)
     r.eyeDepth = texelFetch(depth, texel, 0).x;
     vec2 centre = vec2(texel) + 0.5;
     r.ray = view.rayCorner.xyz + centre.x * view.rayDx.xyz + centre.y * view.rayDy.xyz;
-    vec3 positionWorld = view.eyeWorld.xyz + r.eyeDepth * r.ray;
+    vec3 eye = view.eyeWorld.xyz + centre.x * view.eyeDx.xyz + centre.y * view.eyeDy.xyz;
+    vec3 positionWorld = eye + r.eyeDepth * r.ray;
     r.normalWorld = unitFromOctahedral(texelFetch(normal, texel, 0).xy);
 
     r.positionLight = (lightView.lightFromWorld * vec4(positionWorld, 1.0)).xyz;

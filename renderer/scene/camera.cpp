@@ -52,6 +52,7 @@ View grown(const View& view, glm::ivec2 margin) {
     const glm::vec2 share = glm::vec2(view.size) / glm::vec2(larger.size);
     larger.clipFromWorld = glm::scale(glm::mat4(1), glm::vec3(share, 1)) * view.clipFromWorld;
     larger.rayCorner -= static_cast<float>(margin.x) * view.rayDx + static_cast<float>(margin.y) * view.rayDy;
+    larger.eyeWorld -= static_cast<float>(margin.x) * view.eyeDx + static_cast<float>(margin.y) * view.eyeDy;
     larger.tanHalfFovY /= share.y;
     return larger;
 }

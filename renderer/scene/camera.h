@@ -28,6 +28,9 @@ struct View {
     // A pixel's ray, scaled so that its eye depth is 1: worldFromDepth = eyeWorld + depth · (rayCorner + x·rayDx +
     // y·rayDy), (x, y) in pixels from the lower left corner of the picture, centres at ½.
     glm::vec3 rayCorner{0}, rayDx{0}, rayDy{0};
+    // Of parallel rays, which rayDx and rayDy of 0 make: how far from pixel to pixel the ray begins beside eyeWorld,
+    // which is the lower left corner's. 0 for a camera.
+    glm::vec3 eyeDx{0}, eyeDy{0};
     float near = 0.1f, far = 100;
     glm::ivec2 size{1, 1};
     float tanHalfFovY = 1;

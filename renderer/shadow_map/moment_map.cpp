@@ -66,6 +66,14 @@ Encoding encoding(int count, MomentFormat format, DepthSign sign) {
     return {};
 }
 
+// Two moments of either of two slices.
+Encoding slicesEncoding(MomentFormat format) {
+    Encoding both = encoding(2, format, DepthSign::Unsigned);
+    for (int row = 0; row < 2; ++row)
+        for (int column = 0; column < 2; ++column) both.matrix[column + 2][row + 2] = both.matrix[column][row];
+    return both;
+}
+
 Format textureFormat(int count, MomentFormat format) {
     switch (format) {
     case MomentFormat::Float32: return count == 2 ? Format::RG32F : Format::RGBA32F;
@@ -90,19 +98,30 @@ BiasTarget biasTarget(MomentFormat format, DepthSign sign) {
     return {{0, even, 0, even}, even, even * (1 - even)};
 }
 
+double planeDeviation(const ParameterSet& set) {
+    const Gaussian gaussian(static_cast<int>(set.at("kernel").value()), set.at("sigma").value());
+    constexpr double bilinear = 0.25; // variance at most
+    return std::sqrt(gaussian.variance() + bilinear);
+}
+
 glm::vec2 depthScale(DepthSign sign) { return sign == DepthSign::Signed ? glm::vec2(2, -1) : glm::vec2(1, 0); }
 
 } // namespace
 
-double planeBias(const ParameterSet& set) { return planeBias(set, 0.5); }
-
-double planeBias(const ParameterSet& set, double deviations) {
-    const Gaussian gaussian(static_cast<int>(set.at("kernel").value()), set.at("sigma").value());
-    constexpr double bilinear = 0.25; // variance at most
-    return deviations * std::sqrt(gaussian.variance() + bilinear);
-}
+double planeBias(const ParameterSet& set) { return 0.5 * planeDeviation(set); }
+double steeperBias(const ParameterSet& set) { return 0.8 * planeDeviation(set); }
 
 bool isHalf(const ParameterSet& set) { return set.at("format").value() == double(FloatFormat::Float16); }
+
+double MinimumVariance::usual(const ParameterSet& set) {
+    switch (static_cast<MomentFormat>(static_cast<int>(set.at("format").value()))) {
+    case MomentFormat::Float32: return 1e-6;
+    case MomentFormat::Float16: return 1e-3;
+    case MomentFormat::Unorm16:
+    case MomentFormat::Unorm16Optimised: return 1e-5;
+    }
+    return 0;
+}
 
 double MomentBias::usual(const ParameterSet& set) {
     const auto format = static_cast<MomentFormat>(static_cast<int>(set.at("format").value()));
@@ -142,12 +161,37 @@ MomentLookupBlock lookupOfPowers(int count, const MomentParameters& moments, dou
                                std::max(alpha * target.pivot, leastPivot))};
 }
 
+MomentMapDescription describeSlices(int count, const ShadowMapDescription& map, const KernelParameters& kernel,
+                                    MomentFormat format, float overlap) {
+    static constexpr Channel channels[] = {{"b1", "b₁", "mean of the place in the layer's first slice, as stored"},
+                                           {"b2", "b₂", "mean of its square"},
+                                           {"c1", "c₁", "mean of the place in its second slice"},
+                                           {"c2", "c₂", "mean of its square"}};
+    const Encoding stored = slicesEncoding(format);
+    return {.map = map,
+            .kernel = kernel.kernel,
+            .sigma = kernel.sigma,
+            .functions = DepthFunctions::Slices,
+            .format = textureFormat(4, format),
+            .layers = (count + 1) / 2,
+            .exponents = {static_cast<float>(count), overlap},
+            .storedFromMoments = stored.matrix,
+            .storedOffset = stored.offset,
+            .channels = channels};
+}
+
+MomentLookupBlock lookupOfSlices(MomentFormat format) {
+    const Encoding stored = slicesEncoding(format);
+    const dmat4 inverse = glm::inverse(stored.matrix);
+    return {.momentsFromStored = glm::mat4(inverse),
+            .momentsOffset = glm::vec4(-(inverse * stored.offset)),
+            .depth_exponents = glm::vec4(1, 0, 0, 0),
+            .range = glm::vec4(0, 1, 0, 0)};
+}
+
 MomentMap drawMomentMap(Flow& flow, Scope scope, const Inputs& inputs, const MomentMapDescription& description) {
     const Gaussian gaussian(description.kernel, description.sigma);
-    ShadowMapDescription bordered = description.map;
-    // Filtered, casters reach beyond themselves; the map's edge still is empty.
-    bordered.border += std::min(gaussian.half, bordered.size / 4);
-    const ShadowMap map = drawShadowMap(flow, scope, inputs, bordered);
+    const ShadowMap map = drawShadowMap(flow, scope, inputs, description.map);
 
     MomentFilterBlock block{.storedFromMoments = glm::mat4(description.storedFromMoments),
                             .storedOffset = glm::vec4(description.storedOffset),
@@ -155,7 +199,7 @@ MomentMap drawMomentMap(Flow& flow, Scope scope, const Inputs& inputs, const Mom
                             .kernel = {gaussian.half, 0, 0, 0},
                             .weights = {}};
     for (int i = 0; i <= gaussian.half; ++i) block.weights[i].x = static_cast<float>(gaussian.weights[i]);
-    const Extent extent{.width = description.map.size, .height = description.map.size};
+    const int size = description.map.size, wider = size + 2 * gaussian.half;
     const bool encoded = description.storedFromMoments != dmat4(1) || description.storedOffset != dvec4(0);
     const auto filter = [&](std::string_view name, Image source, bool fromDepth, bool rows) {
         Compute work{"moment_map.glsl", {}};
@@ -163,16 +207,20 @@ MomentMap drawMomentMap(Flow& flow, Scope scope, const Inputs& inputs, const Mom
         if (fromDepth) work.defines.push_back({"FUNCTIONS", static_cast<int>(description.functions)});
         if (fromDepth && encoded) work.defines.push_back({"ENCODED"});
         if (rows) work.defines.push_back({"ROWS"});
+        if (description.layers > 1) work.defines.push_back({"LAYERED"});
         return Image(flow.pass(scope, {.stage = Stage::Prefilter,
                                        .name = name,
                                        .work = work,
                                        .reads = {{"source", source}},
-                                       .writes = {{name, description.format, extent, description.channels}},
+                                       .writes = {{name,
+                                                   description.format,
+                                                   {wider, rows ? size : wider, description.layers},
+                                                   description.channels}},
                                        .constants = block}));
     };
     const bool wide = gaussian.half > 0;
     const Image source = wide ? filter("moments-of-rows", map.depth, true, true) : map.depth;
-    MomentMap result{filter("moments", source, !wide, false), map.depth, map.view, {}};
+    MomentMap result{filter("moments", source, !wide, false), map.depth, map.view, gaussian.half, {}};
     for (int i = 0; i <= gaussian.half; ++i) result.weights[i / 4][i % 4] = block.weights[i].x;
     return result;
 }
@@ -183,8 +231,10 @@ Image resolveMoments(Flow& flow, Scope scope, const Inputs& inputs, std::string_
         ResolveConstants resolve;
         MomentLookupBlock lookup;
     } block{resolveConstants(inputs, map.view), lookup};
+    block.lookup.border_perTexel = {map.border, 1.0f / static_cast<float>(flow.spec(map.moments).extent.width), 0, 0};
     std::copy(std::begin(map.weights), std::end(map.weights), block.lookup.weights);
-    const Resolver resolver{.shader = shader, .constants = block};
+    Resolver resolver{.shader = shader, .constants = block};
+    if (const int layers = flow.spec(map.moments).extent.layers; layers > 1) resolver.defines.push_back({"LAYERED"});
     const Read moments{"moments", map.moments, Sampling::Linear};
     if (withDepths) return resolve(flow, scope, inputs, resolver, {moments, {"shadowMap", map.depth}}, parameters);
     return resolve(flow, scope, inputs, resolver, {moments}, parameters);

@@ -9,7 +9,7 @@ namespace penumbra {
 
 using glm::vec3;
 #include "shaders/shared/moments.glsl.h"
-static_assert(sizeof(MomentFilterBlock) == 624 && sizeof(MomentLookupBlock) == 240);
+static_assert(sizeof(MomentFilterBlock) == 688 && sizeof(MomentLookupBlock) == 256);
 
 inline constexpr double largestMomentMap = 8192; // texels along a side
 
@@ -47,10 +47,22 @@ struct KernelParameters : ParameterGroup {
 // depths of a plane that rises by 1 a texel. At their mean such a bound is up to 0.17 on a lit slope, half a deviation
 // before it 0.04 and one deviation before it nothing; contacts leak light in return.
 double planeBias(const ParameterSet& set);
-double planeBias(const ParameterSet& set, double deviations);
+double steeperBias(const ParameterSet& set); // 0.8 deviations: sharper bounds leave a plane less far before its mean
 
 enum class MomentFormat { Float32, Float16, Unorm16, Unorm16Optimised };
 inline constexpr std::string_view momentFormatNames[] = {"32f", "16f", "unorm16", "unorm16-optimised"};
+
+struct MomentFormatChoice : Choice<MomentFormat> {
+    MomentFormatChoice(ParameterSet& set, MomentFormat usual)
+        : Choice(set,
+                 {.id = "format",
+                  .value = double(usual),
+                  .source = "Peters and Klein 2015, section 4.3",
+                  .help = "How a texel keeps its moments. 32f needs the least bias and twice the memory of the others: "
+                          "unorm16-optimised spreads the moments over all of the 16 bits, plain unorm16 and 16f show "
+                          "what happens without.",
+                  .choices = momentFormatNames}) {}
+};
 
 // Which depths the moments are of: z in [0, 1], or 2z − 1 in [−1, 1].
 enum class DepthSign { Unsigned, Signed };
@@ -60,14 +72,7 @@ inline constexpr std::string_view depthSignNames[] = {"unsigned", "signed"};
 struct MomentParameters : ParameterGroup {
     MomentParameters(ParameterSet& s, MomentFormat usual, DepthSign usualSign)
         : ParameterGroup(s, "Moments")
-        , format{set,
-                 {.id = "format",
-                  .value = double(usual),
-                  .source = "Peters and Klein 2015, section 4.3",
-                  .help = "How a texel keeps its moments. 32f needs the least bias and twice the memory of the others: "
-                          "unorm16-optimised spreads the moments over all of the 16 bits, plain unorm16 and 16f show "
-                          "what happens without.",
-                  .choices = momentFormatNames}}
+        , format{set, usual}
         , depthSign{set,
                     {.id = "depth-range",
                      .label = "Depth range",
@@ -76,7 +81,7 @@ struct MomentParameters : ParameterGroup {
                      .help = "Moments of depths in [0, 1] or in [−1, 1]. The latter are known more exactly, above all "
                              "in the middle, and need less bias.",
                      .choices = depthSignNames}} {}
-    Choice<MomentFormat> format;
+    MomentFormatChoice format;
     Choice<DepthSign> depthSign;
     End end{set};
 };
@@ -96,6 +101,22 @@ struct FloatFormatChoice : Choice<FloatFormat> {
 bool isHalf(const ParameterSet& set);
 
 // Of techniques that bound ψ by a mean and a variance.
+struct MinimumVariance : Real {
+    explicit MinimumVariance(ParameterSet& set)
+        : Real(set,
+               {.id = "minimum-variance",
+                .label = "Minimum variance",
+                .symbol = "σ²_min",
+                .min = 0,
+                .max = 1e-2,
+                .scale = Scale::Logarithmic,
+                .smallest = 1e-9,
+                .source = "Donnelly and Lauritzen 2006",
+                .help = "Variances below count as this, in squares of the depth range. Hides rounding on lit surfaces; "
+                        "more of it lets light through at contacts.",
+                .defaultFrom = usual}) {}
+    static double usual(const ParameterSet& set);
+};
 struct LightBleedingReduction : Real {
     explicit LightBleedingReduction(ParameterSet& set)
         : Real(set,
@@ -109,9 +130,9 @@ struct LightBleedingReduction : Real {
                         "where two casters overlap; thins out penumbrae."}) {}
 };
 
-// Of techniques that solve a moment problem of four powers.
+// Of techniques that solve a moment problem of powers.
 struct MomentBias : Real {
-    explicit MomentBias(ParameterSet& set)
+    explicit MomentBias(ParameterSet& set, double (*defaultFrom)(const ParameterSet&) = usual)
         : Real(set,
                {.id = "moment-bias",
                 .label = "Moment bias",
@@ -124,13 +145,14 @@ struct MomentBias : Real {
                           "2017 (3e-7, 6e-5)",
                 .help = "Share of a fixed distribution that is mixed into the moments, so that rounding cannot make "
                         "them impossible. Too little speckles lit surfaces, too much lets light through at contacts.",
-                .defaultFrom = usual}) {}
+                .defaultFrom = defaultFrom}) {}
     static double usual(const ParameterSet& set);
 };
 
-// What is stored for a depth x: its powers; exp(e1 x); p = exp(e1 x), p², n = −exp(−e2 x), n²; or sin and cos of 2πx
-// and 4πx.
-enum class DepthFunctions { Powers, Exponential, Exponentials, Trigonometric };
+// What is stored for a depth x: its powers, four a layer; exp(e1 x); p = exp(e1 x), p², n = −exp(−e2 x), n²; sin and
+// cos of 2πx and 4πx; on each layer two terms of a square wave (lib/convolution.glsl); or its place in two of e1 slices
+// of the range, which overlap by e2, each with its square (lib/slices.glsl).
+enum class DepthFunctions { Powers, Exponential, Exponentials, Trigonometric, SquareWave, Slices };
 
 struct MomentMapDescription {
     ShadowMapDescription map;
@@ -138,19 +160,22 @@ struct MomentMapDescription {
     float sigma = 1;
     DepthFunctions functions = DepthFunctions::Powers;
     Format format = Format::RGBA32F;
+    int layers = 1;            // four functions each
     glm::vec2 depth{1, 0};     // the functions are of depth.x z + depth.y
-    glm::vec2 exponents{0, 0}; // of exponential functions
+    glm::vec2 exponents{0, 0}; // e1, e2 of some functions
     // Stored texels are matrix · moments + offset.
     glm::dmat4 storedFromMoments{1};
     glm::dvec4 storedOffset{0};
     std::span<const Channel> channels = {};
 };
 
-// Draws the shadow map and filters it: "moments-of-rows", then "moments".
+// Draws the shadow map and filters it: "moments-of-rows", then "moments", larger than the shadow map by half a kernel
+// on each side.
 struct MomentMap {
     Image moments;
     Image depth; // the shadow map
     LightViewBlock view;
+    int border;           // half a kernel [texels]
     glm::vec4 weights[8]; // of the kernel
 };
 MomentMap drawMomentMap(Flow& flow, Scope scope, const Inputs& inputs, const MomentMapDescription& description);
@@ -159,6 +184,11 @@ MomentMap drawMomentMap(Flow& flow, Scope scope, const Inputs& inputs, const Mom
 MomentMapDescription describePowers(int count, const ShadowMapDescription& map, const KernelParameters& kernel,
                                     const MomentParameters& moments);
 MomentLookupBlock lookupOfPowers(int count, const MomentParameters& moments, double alpha = 0);
+
+// So many slices of the depth range (lib/slices.glsl), two moments each.
+MomentMapDescription describeSlices(int count, const ShadowMapDescription& map, const KernelParameters& kernel,
+                                    MomentFormat format, float overlap);
+MomentLookupBlock lookupOfSlices(MomentFormat format);
 
 // The pass from a moment map to ψ: a shader that includes moment_lookup.glsl; `withDepths` reads the shadow map as
 // well.

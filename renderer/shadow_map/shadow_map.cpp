@@ -227,16 +227,15 @@ MapFit fitMap(const AreaLight& light, std::span<const Occluder> occluders, const
 
 vec2 gridShift(uint32_t i) { return r2Point(i) - 0.5f; }
 
-LightViewBlock lightView(const Inputs& inputs, const ShadowMapDescription& description) {
+LightViewBlock lightView(const AreaLight& light, std::span<const Occluder> occluders,
+                         const ShadowMapDescription& description, const View* view) {
     const LightSample s = description.sample;
     const int size = description.size;
-    const AreaLight& light = inputs.light;
     const bool directional = light.shape == LightShape::Directional, radial = description.metric != Metric::Axial;
     ensure(!(directional && radial), "a directional light has no point to measure radial depth from");
     const mat4 fromWorld = lightFromWorld(light);
     const vec2 half = halfSize(light);
-    const MapFit fit =
-        fitMap(light, inputs.occluders, fromWorld, half, description.fit == Fit::View ? &inputs.view : nullptr);
+    const MapFit fit = fitMap(light, occluders, fromWorld, half, description.fit == Fit::View ? view : nullptr);
     const float f = fit.reference;
 
     // Square texels, and a border of empty ones, whole after a shift too.
@@ -356,8 +355,8 @@ ShadowMap drawShadowMap(Flow& flow, Scope scope, const Inputs& inputs, const Sha
 }
 
 ViewBlock viewBlock(const View& view) {
-    return {view.clipFromWorld,  vec4(view.eyeWorld, 0), vec4(view.rayCorner, 0),
-            vec4(view.rayDx, 0), vec4(view.rayDy, 0),    vec4(view.size, view.near, view.far)};
+    return {view.clipFromWorld,  vec4(view.eyeWorld, 0), vec4(view.rayCorner, 0), vec4(view.rayDx, 0),
+            vec4(view.rayDy, 0), vec4(view.eyeDx, 0),    vec4(view.eyeDy, 0),     vec4(view.size, view.near, view.far)};
 }
 
 ResolveConstants resolveConstants(const Inputs& inputs, const LightViewBlock& light, bool withMargin) {

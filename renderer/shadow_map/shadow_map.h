@@ -148,8 +148,12 @@ struct ReceiverPlane : Flag {
 };
 
 // The projection of a map. The window and the depth range are fitted to casters and receivers as seen from the whole
-// light, so they are the same for every sample.
-LightViewBlock lightView(const Inputs& inputs, const ShadowMapDescription& description);
+// light, so they are the same for every sample. Without a view it is fitted to the scene.
+LightViewBlock lightView(const AreaLight& light, std::span<const Occluder> occluders,
+                         const ShadowMapDescription& description, const View* view = nullptr);
+inline LightViewBlock lightView(const Inputs& inputs, const ShadowMapDescription& description) {
+    return lightView(inputs.light, inputs.occluders, description, &inputs.view);
+}
 
 // Draws a map: an image "shadow-map" ("shadow-map-2" for the second layer ...) of linear depth in [0, 1], 1 where
 // nothing casts. Layers are peeled one behind the other, each with those before it.

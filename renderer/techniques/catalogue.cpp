@@ -16,9 +16,12 @@
     X(vsm)                                                                                                             \
     X(esm)                                                                                                             \
     X(evsm)                                                                                                            \
+    X(convolution)                                                                                                     \
+    X(lvsm)                                                                                                            \
     X(msmHamburger)                                                                                                    \
     X(msmHausdorff)                                                                                                    \
     X(msmTrigonometric)                                                                                                \
+    X(msmSix)                                                                                                          \
     X(fractionalDisk)
 
 namespace penumbra {

@@ -6,13 +6,6 @@
 
 namespace penumbra {
 
-namespace {
-
-// A sharper bound leaves a plane less far before its mean.
-double steeperBias(const ParameterSet& set) { return planeBias(set, 0.8); }
-
-} // namespace
-
 extern const Card msmHausdorffCard;
 const Card msmHausdorffCard{
     .id = "msm-hausdorff",

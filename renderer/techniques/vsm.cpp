@@ -10,32 +10,11 @@
 namespace penumbra {
 namespace {
 
-double usualVariance(const ParameterSet& set) {
-    switch (static_cast<MomentFormat>(static_cast<int>(set.at("format").value()))) {
-    case MomentFormat::Float32: return 1e-6;
-    case MomentFormat::Float16: return 1e-3;
-    case MomentFormat::Unorm16:
-    case MomentFormat::Unorm16Optimised: return 1e-5;
-    }
-    return 0;
-}
-
 struct Parameters : ParameterSet {
     ShadowMapParameters map{*this, {.largest = largestMomentMap}};
     KernelParameters kernel{*this};
     MomentParameters moments{*this, MomentFormat::Float32, DepthSign::Unsigned};
-    Real minimumVariance{*this,
-                         {.id = "minimum-variance",
-                          .label = "Minimum variance",
-                          .symbol = "σ²_min",
-                          .min = 0,
-                          .max = 1e-2,
-                          .scale = Scale::Logarithmic,
-                          .smallest = 1e-9,
-                          .source = "Donnelly and Lauritzen 2006",
-                          .help = "Variances below count as this, in squares of the depth range. Hides rounding on lit "
-                                  "surfaces; more of it lets light through at contacts.",
-                          .defaultFrom = usualVariance}};
+    MinimumVariance minimumVariance{*this};
     LightBleedingReduction bleeding{*this};
     BiasParameters bias{*this, {.slope = 0.5, .normalOffset = 0.5}};
 };

@@ -9,7 +9,7 @@ struct MomentFilterBlock {
     vec4 storedOffset;
     vec4 depth_exponents; // xy: the functions are of x z + y, z in [0, 1]; zw = exponents
     ivec4 kernel;         // x = texels on either side of the centre
-    vec4 weights[32];     // x: of the centre, of those beside it ...; one a vector, since a component by number is slow
+    vec4 weights[36];     // x: of the centre, of those beside it ..., 0 beyond; one a vector, since a component by number is slow
 };
 
 // How stored moments, filtered, are read: moments = momentsFromStored · stored + momentsOffset, the moment bias included.
@@ -18,5 +18,6 @@ struct MomentLookupBlock {
     vec4 momentsOffset;
     vec4 depth_exponents; // as in MomentFilterBlock
     vec4 range;           // DepthRange of lib/moments.glsl
+    vec4 border_perTexel; // x: texels by which the map begins before the shadow map, y: 1 / texels along a side
     vec4 weights[8];      // of the kernel's centre, of those beside it ..., four a vector
 };

@@ -2,15 +2,16 @@
 // What both sides know of a view and of a shadow map's projection. Compiled by C++ (renderer/shared.h) and by GLSL;
 // rows of 16 bytes only, so that std140 and C++ agree.
 
-// A picture's rays: positionWorld = eyeWorld + depth · (rayCorner + x·rayDx + y·rayDy), (x, y) in pixels from the lower
-// left corner, centres at ½, depth along the view axis [m].
+// A picture's rays: positionWorld = eyeWorld + x·eyeDx + y·eyeDy + depth · (rayCorner + x·rayDx + y·rayDy), (x, y) in
+// pixels from the lower left corner, centres at ½, depth along the view axis [m].
 struct ViewBlock {
     mat4 clipFromWorld;
     vec4 eyeWorld;
     vec4 rayCorner;
     vec4 rayDx; // w, and that of rayDy: pixels between the edges of the geometry buffer and of the image that is written
     vec4 rayDy;
-    vec4 size; // width, height [pixels], near, far [m]
+    vec4 eyeDx, eyeDy; // 0 for a camera, else rayDx and rayDy are
+    vec4 size;         // width, height [pixels], near, far [m]
 };
 
 // A shadow map as seen from a point of the light.

@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdlib>
+#include <map>
 #include <sstream>
 
 using namespace penumbra;
@@ -129,6 +130,37 @@ TEST_CASE("a measurement tells times, errors, and which view it is of") {
 TEST_CASE("the same command gives the same errors, to the last digit") {
     const std::vector<std::string> arguments{"--techniques", "hard,pcss,light-sampling", "--set", "samples=16"};
     CHECK(errorsIn(measuredJson(arguments)) == errorsIn(measuredJson(arguments)));
+}
+
+TEST_CASE("the error of the irradiance ranks bounds by what they know, against filtering of the same kernel") {
+    const Result run = runProgram({"measure", "overlapping-occluders", "--error", "irradiance", "--techniques",
+                                   "none,pcf,vsm,msm-hamburger,msm-hausdorff,msm-trigonometric,msm-six", "--set",
+                                   "map-size=128", "--set", "pcf.shape=gaussian", "--sweep", "pcf.kernel=9", "--json"});
+    INFO(run.errors);
+    REQUIRE(run.exitCode == 0);
+    CHECK_FALSE(contains(run.errors, "OpenGL"));
+    const json document = json::parse(run.output);
+    CHECK(document.at("metric") == "irradiance");
+    std::map<std::string, json> errors;
+    for (const json& result : document.at("results")) errors[result.at("technique")] = result.at("error");
+    REQUIRE(errors.size() == 7);
+    for (const auto& [technique, error] : errors) {
+        INFO(technique << " " << error.dump());
+        CHECK(error.at("layers") > 1);
+        CHECK(error.at("last_layer") == 0);
+        CHECK(std::abs(error.at("bias").get<double>()) <= error.at("mean_abs").get<double>());
+    }
+    // What is not shadowed at all is wrong by all that is shadowed; the reference itself by nothing.
+    CHECK(errors["none"].at("shadowed") > 0.01);
+    CHECK(errors["none"].at("mean_abs").get<double>() == Approx(errors["none"].at("shadowed").get<double>()));
+    CHECK(errors["pcf"].at("mean_abs") == 0);
+    for (const char* technique : {"msm-hamburger", "msm-hausdorff", "msm-trigonometric", "msm-six"}) {
+        INFO(technique);
+        CHECK(errors[technique].at("mean_abs") < errors["vsm"].at("mean_abs"));
+    }
+
+    requireRefused({"measure", "--error", "irradiation"}, {"--error", "irradiation", "irradiance"});
+    requireRefused({"measure", "--error", "irradiance", "--against", "ray"}, {"--error irradiance", "--against"});
 }
 
 TEST_CASE("sweeps make rows, and parts of them join to the whole") {
@@ -263,8 +295,8 @@ TEST_CASE("views of the project fix camera and light") {
 }
 
 TEST_CASE("techniques tell how many texels a pixel reads, and how many maps and passes they take") {
-    const json document = measuredJson({"--techniques", "none,pcf,pcss,light-sampling", "--set", "pcf.kernel=5", "--set",
-                                        "samples=3", "--set", "search-taps=8", "--set", "filter-taps=20"});
+    const json document = measuredJson({"--techniques", "none,pcf,pcss,light-sampling", "--set", "pcf.kernel=5",
+                                        "--set", "samples=3", "--set", "search-taps=8", "--set", "filter-taps=20"});
     const json& results = document.at("results");
     const auto reads = [](int least, int most) { return json{{"least", least}, {"most", most}}; };
     CHECK(results[0].at("reads") == reads(0, 0));
@@ -279,8 +311,8 @@ TEST_CASE("techniques tell how many texels a pixel reads, and how many maps and 
 }
 
 TEST_CASE("the best within a budget is searched for, and everything that was tried is told") {
-    const std::vector<std::string> question{"measure", "two-boxes", "--size", "48x32", "--samples", "128", "--techniques",
-                                            "hard,pcf", "--free", "kernel=1:9"};
+    const std::vector<std::string> question{"measure", "two-boxes",    "--size",   "48x32",  "--samples",
+                                            "128",     "--techniques", "hard,pcf", "--free", "kernel=1:9"};
     const auto answer = [&](std::vector<std::string> more) {
         std::vector<std::string> arguments = question;
         arguments.insert(arguments.end(), more.begin(), more.end());
@@ -349,9 +381,10 @@ TEST_CASE("bad input to measure is refused in one line") {
 TEST_CASE("an interrupted measurement keeps what is done") {
     const TemporaryFolder folder;
     const std::string output = folder / "output", errors = folder / "errors";
-    // Far too many frames; the interrupt comes when measuring has begun, and once: a second one would end the program, and
-    // timeout sends it to the whole group of processes too if it is not told that it runs in the foreground.
-    const std::string line = "timeout --foreground -s INT 20 '" PENUMBRA_PROGRAM "' measure two-boxes --size 48x32 --samples 128 "
+    // Far too many frames; the interrupt comes when measuring has begun, and once: a second one would end the program,
+    // and timeout sends it to the whole group of processes too if it is not told that it runs in the foreground.
+    const std::string line = "timeout --foreground -s INT 20 '" PENUMBRA_PROGRAM
+                             "' measure two-boxes --size 48x32 --samples 128 "
                              "--techniques none,hard --frames 1000000 --json > '" +
                              output + "' 2> '" + errors + "'";
     std::system(line.c_str());

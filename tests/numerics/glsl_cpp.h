@@ -51,6 +51,7 @@ using glm::atan;
 using glm::cos;
 using glm::cross;
 using glm::dot;
+using glm::exp;
 using glm::floor;
 using glm::fract;
 using glm::inversesqrt;
@@ -90,7 +91,10 @@ using vec4 = glm::vec<4, float>;
 #include "shaders/lib/colour_map.glsl"
 using namespace unfused;
 #include "shaders/lib/moments.glsl"
+#include "shaders/lib/convolution.glsl"
+#include "shaders/lib/moments_six.glsl"
 #include "shaders/lib/moments_trigonometric.glsl"
+#include "shaders/lib/slices.glsl"
 } // namespace f32
 
 namespace f32fused {
@@ -100,7 +104,10 @@ using vec2 = glm::vec<2, float>;
 using vec3 = glm::vec<3, float>;
 using vec4 = glm::vec<4, float>;
 #include "shaders/lib/moments.glsl"
+#include "shaders/lib/convolution.glsl"
+#include "shaders/lib/moments_six.glsl"
 #include "shaders/lib/moments_trigonometric.glsl"
+#include "shaders/lib/slices.glsl"
 } // namespace f32fused
 
 #define float double
@@ -119,7 +126,10 @@ using vec4 = glm::vec<4, double>;
 #include "shaders/lib/colour_map.glsl"
 using namespace fused;
 #include "shaders/lib/moments.glsl"
+#include "shaders/lib/convolution.glsl"
+#include "shaders/lib/moments_six.glsl"
 #include "shaders/lib/moments_trigonometric.glsl"
+#include "shaders/lib/slices.glsl"
 } // namespace f64
 #undef float
 

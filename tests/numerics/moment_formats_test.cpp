@@ -180,6 +180,11 @@ int insaneTexels(size_t count) {
             check(f32fused::hausdorffBound(b, x, {range.low, range.high, range.leastVariance, range.leastPivot}));
         }
         check(f32::varianceBound(glm::vec2(q), z, 1e-12f));
+        const glm::vec4 b = 2.0f * q - 1.0f;
+        const glm::vec3 norms =
+            glm::max((i % 2 ? 1e-4f : 0.0f) * glm::vec3(0.5f, 0.125f, 0.03125f), {1e-7f, 1e-8f, 1e-9f});
+        check(f32::sixMomentsBound({b.x, q.x, b.y, q.y, b.z, q.z}, 2 * z - 1, norms));
+        check(f32fused::sixMomentsBound({b.x, q.x, b.y, q.y, b.z, q.z}, 2 * z - 1, norms));
         check(f32::trigonometricBound(2.0f * q - 1.0f, z, 1e-7f));
         check(f32fused::trigonometricBound(2.0f * q - 1.0f, z, 1e-7f));
     }

@@ -113,18 +113,18 @@ f32::DepthRange rangeOf(double alpha) {
 }
 f32fused::DepthRange alike(const f32::DepthRange& r) { return {r.low, r.high, r.leastVariance, r.leastPivot}; }
 
-// Weights of five atoms that have the moments, by elimination with more digits than the solver has.
-std::vector<long double> weightsOf(const std::vector<double>& atoms, const double (&moments)[5]) {
-    const size_t n = atoms.size();
-    std::vector<std::vector<long double>> rows(5, std::vector<long double>(n + 1));
-    for (size_t k = 0; k < 5; ++k) {
+// Weights of as many atoms as there are moments that have them, by elimination with more digits than the solver has.
+std::vector<long double> weightsOf(const std::vector<double>& atoms, const std::vector<double>& moments) {
+    const size_t n = atoms.size(), equations = moments.size();
+    std::vector<std::vector<long double>> rows(equations, std::vector<long double>(n + 1));
+    for (size_t k = 0; k < equations; ++k) {
         for (size_t j = 0; j < n; ++j) rows[k][j] = std::pow(static_cast<long double>(atoms[j]), static_cast<int>(k));
         rows[k][n] = moments[k];
     }
     for (size_t j = 0; j < n; ++j) {
         const auto larger = [&](const auto& p, const auto& q) { return std::abs(p[j]) < std::abs(q[j]); };
         std::swap(rows[j], *std::max_element(rows.begin() + static_cast<std::ptrdiff_t>(j), rows.end(), larger));
-        for (size_t k = 0; k < 5; ++k) {
+        for (size_t k = 0; k < equations; ++k) {
             if (k == j) continue;
             const long double factor = rows[k][j] / rows[j][j];
             for (size_t i = j; i <= n; ++i) rows[k][i] -= factor * rows[j][i];
@@ -135,25 +135,28 @@ std::vector<long double> weightsOf(const std::vector<double>& atoms, const doubl
     return weights;
 }
 
-// The least mass in front of v that atoms at `grid` can have with the moments 1, 0, 1, γ, κ. Columns are scaled, since
-// powers of far atoms make a solver fail; which atoms are needed is the solver's answer, their weights are worked out
-// again.
-double leastMass(std::vector<double> grid, double v, double skew, double kurtosis) {
+// The least mass in front of v that atoms at `grid` can have with the moments E vᵏ, k = 0, 1 ... Columns are scaled,
+// since powers of far atoms make a solver fail; which atoms are needed is the solver's answer, their weights are worked
+// out again.
+double leastMass(std::vector<double> grid, double v, const std::vector<double>& moments) {
     std::sort(grid.begin(), grid.end());
     grid.erase(std::unique(grid.begin(), grid.end()), grid.end());
     glp_prob* problem = glp_create_prob();
     glp_set_obj_dir(problem, GLP_MIN);
-    const double moments[] = {1, 0, 1, skew, kurtosis};
-    glp_add_rows(problem, 5);
-    for (int k = 0; k < 5; ++k) glp_set_row_bnds(problem, k + 1, GLP_FX, moments[k], moments[k]);
+    const int count = static_cast<int>(moments.size());
+    glp_add_rows(problem, count);
+    for (int k = 0; k < count; ++k) {
+        const double moment = moments[static_cast<size_t>(k)];
+        glp_set_row_bnds(problem, k + 1, GLP_FX, moment, moment);
+    }
     glp_add_cols(problem, static_cast<int>(grid.size()));
     for (size_t j = 0; j < grid.size(); ++j) {
         const int column = static_cast<int>(j) + 1;
-        const double scale = 1 / (1 + std::pow(grid[j], 4));
-        const int rows[] = {0, 1, 2, 3, 4, 5};
-        double values[6];
-        for (int k = 0; k < 5; ++k) values[k + 1] = scale * std::pow(grid[j], k);
-        glp_set_mat_col(problem, column, 5, rows, values);
+        const double scale = 1 / (1 + std::pow(grid[j], count - 1));
+        const int rows[] = {0, 1, 2, 3, 4, 5, 6, 7};
+        double values[8];
+        for (int k = 0; k < count; ++k) values[k + 1] = scale * std::pow(grid[j], k);
+        glp_set_mat_col(problem, column, count, rows, values);
         glp_set_col_bnds(problem, column, GLP_LO, 0, 0);
         glp_set_obj_coef(problem, column, grid[j] < v ? scale : 0);
     }
@@ -239,13 +242,13 @@ TEST_CASE("bounds of four powers are what linear programming finds") {
         if (std::min(variance, s.spread * variance * variance) < 1e-8) continue;
         const f64::ThreeAtoms a = f64::threeAtoms(s, v);
         const double far = 1 / a.perFar;
+        const std::vector<double> moments{1, 0, 1, s.skew, kurtosis};
         const double reach = std::min(2 * std::max({std::abs(a.near), std::abs(far), std::abs(v), 4.0}), 1e3);
-        const double line = leastMass(gridOver(-reach, reach, {v, a.near, far}), v, s.skew, kurtosis);
+        const double line = leastMass(gridOver(-reach, reach, {v, a.near, far}), v, moments);
         const double low = -s.mean * s.perSigma, high = (1 - s.mean) * s.perSigma;
         const double pull = f64::cubicMean(s, low, high, v);
         const double fourth = (kurtosis - s.skew * (low + high + v) + low * high + v * (low + high)) / pull;
-        const double interval =
-            leastMass(gridOver(low, high, {v, a.near, far, fourth, low, high}), v, s.skew, kurtosis);
+        const double interval = leastMass(gridOver(low, high, {v, a.near, far, fourth, low, high}), v, moments);
         if (!std::isfinite(line) || !std::isfinite(interval)) {
             ++unsolved;
             continue;
@@ -260,6 +263,118 @@ TEST_CASE("bounds of four powers are what linear programming finds") {
     CHECK(unsolved < 0.02 * compared);
     CHECK(worst < 1e-6);
     CHECK(worstInside < 1e-6);
+}
+
+namespace {
+
+// Of depths in [0, 1], as the map keeps them: in [−1, 1]. `alpha` of the arcsine distribution is mixed in.
+f64::SixMoments sixMoments(const Distribution& d, double alpha) {
+    static constexpr double arcsine[] = {0, 0.5, 0, 0.375, 0, 0.3125};
+    double b[6];
+    for (int k = 0; k < 6; ++k) {
+        b[k] = d.mean([&](double z) { return std::pow(2 * z - 1, k + 1); });
+        b[k] += alpha * (arcsine[k] - b[k]);
+    }
+    return {b[0], b[1], b[2], b[3], b[4], b[5]};
+}
+glm::dvec3 leastNorms(double alpha) { return glm::max(alpha * glm::dvec3(0.5, 0.125, 0.03125), 1e-300); }
+
+} // namespace
+
+TEST_CASE("the bound of six powers has its golden values, and gives three surfaces exactly") {
+    // By 120 digits from algorithm 2 as the paper has it.
+    const Distribution d4 = named.at("D4");
+    const Distribution d5{{{0.05, 0.1}, {0.2, 0.3}, {0.5, 0.2}, {0.7, 0.25}, {0.98, 0.15}}};
+    struct Row {
+        const Distribution& d;
+        double alpha, psi[5]; // at 0.2, 0.45, 0.65, 0.75, 0.95
+    };
+    const double depths[] = {0.2, 0.45, 0.65, 0.75, 0.95};
+    const Row rows[] = {
+        {d4, 0, {0.1027149913882, 0.3324392171314, 0.5564862328041, 0.624464668966, 0.8945654129556}},
+        {d5, 0, {0.06464106385834, 0.3051487894328, 0.4795446614237, 0.6057564004312, 0.7937534956261}},
+        {named.at("D3"), 1e-4, {1.239054767712e-6, 0.299676542653, 0.5989903781236, 0.5996050216944, 0.9999346363182}},
+        {named.at("S2"), 1e-4, {0, 0.499791641867, 0.4999325817988, 0.5000029755127, 0.9999696808514}}};
+    for (const Row& row : rows)
+        for (int i = 0; i < 5; ++i) {
+            CAPTURE(&row - rows, depths[i]);
+            const double x = 2 * depths[i] - 1;
+            CHECK(f64::sixMomentsBound(sixMoments(row.d, row.alpha), x, leastNorms(row.alpha)) ==
+                  Approx(row.psi[i]).margin(1e-8));
+        }
+    Distributions distributions(8);
+    for (int i = 0; i < 1000; ++i) {
+        const double near = 0.3 * distributions.unit();
+        const Distribution three{{{near, 0.3}, {near + 0.3, 0.3}, {near + 0.65, 0.4}}};
+        for (const double z_f : {near + 0.05, near + 0.25, near + 0.35, near + 0.6, near + 0.7}) {
+            CAPTURE(near, z_f);
+            CHECK(f64::sixMomentsBound(sixMoments(three, 1e-10), 2 * z_f - 1, leastNorms(1e-10)) ==
+                  Approx(three.inFront(z_f)).margin(1e-4));
+        }
+    }
+}
+
+TEST_CASE("the bound of six powers is what linear programming finds, sharper than that of four, and none above ψ") {
+    Distributions distributions(9);
+    int compared = 0, unsolved = 0;
+    double worst = 0;
+    for (int i = 0; i < 4000; ++i) {
+        const Distribution d = distributions.next();
+        const double z_f = distributions.fragment(d);
+        CAPTURE(i, z_f);
+        {
+            const double alpha = std::pow(10, -6 + 3 * distributions.unit());
+            const double psi = f64::sixMomentsBound(sixMoments(d, alpha), 2 * z_f - 1, leastNorms(alpha));
+            const double truth = d.inFront(z_f + 1e-6);
+            if (psi > truth + alpha + 1e-5) CHECK(psi <= truth + alpha + 1e-5);
+        }
+        const f64::SixMoments m = sixMoments(d, 0);
+        const f64::Recurrence r = f64::recurrenceOf(m, glm::dvec3(1e-300));
+        if (r.d3 < 1e-6) continue;
+        const double psi = f64::sixMomentsBound(m, 2 * z_f - 1, glm::dvec3(1e-300));
+        CHECK(psi >= f64::hamburgerBound(d.powers(), z_f, exact) - 1e-7);
+        const f64::FourAtoms atoms = f64::fourAtoms(r, 2 * z_f - 1);
+        // Standardised: x = a0 + √D1 v. Sixth powers of what lies farther out are more than the solver can weigh.
+        const double sigma = std::sqrt(r.d1), v = (2 * z_f - 1 - r.a0) / sigma;
+        std::vector<double> grid = gridOver(-4, 4, {v});
+        for (int j = 0; j < 3; ++j) grid.push_back(v + 1 / (sigma * atoms.s[j]));
+        if (std::any_of(grid.begin(), grid.end(), [](double u) { return std::abs(u) > 50; }) || std::abs(v) > 4)
+            continue;
+        std::vector<double> moments;
+        for (int k = 0; k <= 6; ++k)
+            moments.push_back(d.mean([&](double z) { return std::pow((2 * z - 1 - r.a0) / sigma, k); }));
+        const double least = leastMass(grid, v, moments);
+        if (!std::isfinite(least)) {
+            ++unsolved;
+            continue;
+        }
+        ++compared;
+        worst = std::max(worst, std::abs(psi - least));
+    }
+    CAPTURE(compared, unsolved, worst);
+    CHECK(compared > 500);
+    CHECK(unsolved < 0.1 * compared);
+    CHECK(worst < 1e-6);
+}
+
+TEST_CASE("layers of a square wave add up to its series") {
+    // S(x) at golden places: its first maximum and first trough for 4 and 16 terms, and ½ at 0.
+    const auto series = [](double z, double t, int terms) {
+        double sum = 0.5;
+        for (int layer = 0; layer < (terms + 1) / 2; ++layer)
+            sum += f64::squareWaveAt(f64::squareWaveOf(z, layer), t, layer, terms, 0.0);
+        return sum;
+    };
+    for (const double t : {0.0, 0.3, 0.7}) {
+        CAPTURE(t);
+        CHECK(series(t, t, 16) == Approx(0.5).margin(1e-6));
+        CHECK(series(t + 1.0 / 2, t, 1) == Approx(1.13661977237).margin(1e-6));
+        CHECK(series(t + 1.0 / 8, t, 4) == Approx(1.09211256669).margin(1e-6));
+        CHECK(series(t + 1.0 / 4, t, 4) == Approx(0.945870937525).margin(1e-6));
+        CHECK(series(t + 1.0 / 32, t, 16) == Approx(1.08965270445).margin(1e-6));
+        CHECK(series(t + 1.0 / 16, t, 16) == Approx(0.951084900927).margin(1e-6));
+        CHECK(series(t - 1.0 / 32, t, 16) == Approx(1 - 1.08965270445).margin(1e-6));
+    }
 }
 
 TEST_CASE("variance and warped variance bounds are Cantelli's inequality") {
@@ -382,5 +497,24 @@ TEST_CASE("no bound is above the true shadow") {
         check(hamburger, hausdorff + 1e-6); // knowing more allows more
         const dvec4 t = biased(d.mean([](double z) { return f64::trigonometricOf(z); }), alpha, dvec4(0));
         check(f64::trigonometricBound(t, z_f, alpha), truth + alpha + 1e-5);
+    }
+}
+
+TEST_CASE("no slice of the depth range bounds ψ from above") {
+    Distributions distributions(10);
+    for (int i = 0; i < 5000; ++i) {
+        const Distribution d = distributions.next();
+        const double z_f = distributions.fragment(d), truth = d.inFront(z_f + 1e-6);
+        CAPTURE(i, z_f);
+        const auto check = [&](double bound) {
+            if (bound > truth + 1e-6) CHECK(bound <= truth);
+        };
+        const double slices = 1 + distributions.below(8), overlap = 0.5 * distributions.unit();
+        for (int pair = 0; 2 * pair < slices; ++pair) {
+            const dvec4 s = d.mean([&](double z) { return f64::slicesOf(z, pair, slices, overlap); });
+            const dvec4 own = f64::slicesOf(z_f, pair, slices, overlap);
+            check(f64::varianceBound(dvec2(s.x, s.y), own.x, 1e-12));
+            check(f64::varianceBound(dvec2(s.z, s.w), own.z, 1e-12));
+        }
     }
 }

@@ -123,6 +123,26 @@ TEST_CASE("two surfaces give every filterable map its golden ψ") {
          {"format=32f", "near-margin=0", "moment-bias=1e-5"},
          {{0.6, 0.499997500}, {0.9, 0.999992361}},
          1e-4},
+        {"msm-six", {"moment-bias=1e-5"}, {{0.5, 0.4999850008}, {0.6, 0.499991278162}, {0.9, 0.999993027508}}, 1e-4},
+        {"convolution",
+         {"terms=4", "attenuation=0", "range-margin=0", "reconstruction=series", "format=32f"},
+         {{0.5, 0.5}, {0.8, 1 - 0.0722792485332}, {0.9, 1}}, // there the series is below 0
+         1e-4},
+        {"convolution",
+         {"attenuation=0", "range-margin=0", "reconstruction=series", "format=snorm16"},
+         {{0.8, 1 - 5.7689561586e-3}, {0.9, 1}},
+         1e-3},
+        {"convolution",
+         {"attenuation=0", "range-margin=0", "reconstruction=doubled", "format=32f"},
+         {{0.5, 0}, {0.8, 1 - 0.0115379123172}, {0.9, 1}},
+         1e-3},
+        {"convolution",
+         {"attenuation=0", "range-margin=0", "reconstruction=bound", "format=32f"},
+         {{0.5, 1 - 0.565235641873}, {0.8, 1 - 0.0877635877825}, {0.9, 1 - 0.100207373646}},
+         1e-3},
+        {"lvsm", {"layers=1", "minimum-variance=0", "overlap=0", "format=32f"}, {{0.9, 1 - 0.280898876404}}, 1e-4},
+        {"lvsm", {"layers=2", "minimum-variance=0", "overlap=0", "format=32f"}, {{0.9, 1 - 0.171232876712}}, 1e-4},
+        {"lvsm", {"layers=4", "minimum-variance=0", "overlap=0"}, {{0.9, 1}}, 1e-3},
     };
     for (const Golden& golden : cases)
         for (const auto& [z_f, psi] : golden.psi) {
