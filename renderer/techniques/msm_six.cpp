@@ -63,8 +63,7 @@ const Card msmSixCard{
     .assumes = "A penumbra of one width everywhere, whatever the light's size and the distance of what casts. At most "
                "three surfaces within the kernel.",
     .fails = "Four and more surfaces within the kernel leak light, and so do contacts: six moments need hundreds of "
-             "times the "
-             "bias of four, and four times the memory at 16 bits.",
+             "times the bias of four, and four times the memory at 16 bits.",
     .litTolerance = 1e-3,
     .lidTolerance = 1e-3,
     .make = [] { return std::unique_ptr<Technique>(new MsmSix); },
