@@ -51,7 +51,7 @@ struct Keys {
 struct KeyHelp {
     std::string_view keys, meaning; // no meaning: a title
 };
-inline constexpr std::string_view keyHelpSecondHalf = "Compare"; // that far it is about the view
+inline constexpr std::string_view keyHelpSecondHalf = "Compare"; // that far the left half goes
 inline constexpr KeyHelp keyHelp[] = {
     {"Camera, in the view", ""},
     {"left drag,  arrow keys", "orbit round the target"},
@@ -68,6 +68,11 @@ inline constexpr KeyHelp keyHelp[] = {
                "double click aims it, Home resets it, C takes the next light of the scene"},
     {"comma, period", "smaller or larger"},
     {"G", "show or hide its handles: drag centre, target or edge"},
+    {"Techniques with a history", ""},
+    {"K", "freeze it, let it go on; frozen, all else can be changed and is drawn with the same past"},
+    {"N,  Shift + N", "one frame; up to the number of frames beside Run to; then it is frozen"},
+    {"R", "restart: forget all history"},
+    {"P,  click", "probe: a pixel's numbers over the frames; right click lets it go"},
     {"Compare", ""},
     {"1  2  3  4",
      "technique A beside the truth or B: wipe with a line to drag, flip, side by side, error map; 2 again "
@@ -76,11 +81,6 @@ inline constexpr KeyHelp keyHelp[] = {
     {"X", "A and B change places"},
     {"Y", "trace the truth, show the errors"},
     {"U", "penumbra ruler: drag its ends across a shadow's edge"},
-    {"Techniques with a history", ""},
-    {"K", "freeze it, let it go on; frozen, all else can be changed and is drawn with the same past"},
-    {"N,  Shift + N", "one frame; up to the number of frames beside Run to; then it is frozen"},
-    {"R", "restart: forget all history"},
-    {"P,  click", "probe: a pixel's numbers over the frames; right click lets it go"},
     {"Images, in the buffers", ""},
     {"wheel, left drag", "zoom, move"},
     {"click, right click", "pin a texel, let it go"},

@@ -204,7 +204,13 @@ void MotionPanel::numbers() const {
             line("At rest", ShortText("{:.4f}", errors[eventFrame - 1]), "RMSE of the last frame before the event");
             line("Peak", ShortText("{:.4f}", ghost.peak), "The largest RMSE from the event on");
             line("Settled", ShortText("{:.4f}", ghost.settled), "Mean RMSE of the last quarter of the frames");
-            line("Half-life", ghost.halfLife > 0 ? ShortText("{} frames", ghost.halfLife) : ShortText("–"),
+            const auto since = std::span(errors).subspan(eventFrame);
+            const auto peak = std::max_element(since.begin(), since.end()) - since.begin();
+            const bool lasting = static_cast<size_t>(peak + ghost.halfLife) >= since.size(); // to the end
+            line("Half-life",
+                 ghost.halfLife == 0 ? ShortText("–")
+                 : lasting           ? ShortText("not reached")
+                                     : ShortText("{} frame{}", ghost.halfLife, ghost.halfLife == 1 ? "" : "s"),
                  "Frames from the peak until the RMSE is half way to where it settles (ringed); – where there is "
                  "nothing to get over");
             line("Flicker", course.flicker ? ShortText("{:.4f}", *course.flicker) : ShortText("–"),

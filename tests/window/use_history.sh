@@ -5,7 +5,7 @@
 source "$(dirname "${BASH_SOURCE[0]}")/person.sh"
 
 # Places in a window of 1280x720.
-step="1045 443" run_to="1103 443" beside="560 470 320 240" # of the drawer: what the probe tells beside its chart
+step="1045 443" run_to="1103 443" beside="640 424 225 76" # of the drawer: what the probe tells beside its chart
 measure="690 469" cancel="835 469"
 
 press() { xdotool mousemove $1 $2 sleep 0.05 mousedown 1; frames 2; xdotool mouseup 1; frames 4; }
@@ -13,7 +13,7 @@ look() { "$person" look "$window" $1 | cksum; }
 frozen() { # whether the hint at the view's upper right says so: only then it reaches that far, in the accent's colour
     (($("$person" look "$window" 722 44 60 14 | tr -s ' ' '\n' | grep -cE '^(d.|e.)(a.|b.)(5.|6.)$') > 8))
 }
-view="250 100 400 150"
+view="430 240 60 40"
 
 start two-boxes --technique temporal --size 1280x720 --set start=hard --set neighbourhood=off --set map-size=256
 told=$(look "$beside")
