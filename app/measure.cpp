@@ -463,9 +463,14 @@ Json irradianceJson(const IrradianceResult& result) {
                  {"error", nullptr}};
     if (result.errors) {
         const IrradianceErrors& e = *result.errors;
-        json["error"] = {{"against", "pcf"},   {"mean_abs", e.mean},       {"bias", e.bias},
-                         {"above", e.above},   {"shadowed", e.shadowed},   {"surfaces", e.surfaces},
-                         {"layers", e.layers}, {"last_layer", e.lastLayer}};
+        json["error"] = {{"against", irradianceReference},
+                         {"mean_abs", e.mean},
+                         {"bias", e.bias},
+                         {"above", e.above},
+                         {"shadowed", e.shadowed},
+                         {"surfaces", e.surfaces},
+                         {"layers", e.layers},
+                         {"last_layer", e.lastLayer}};
     }
     if (!result.trouble.empty()) json["trouble"] = result.trouble;
     return json;

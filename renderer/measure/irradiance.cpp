@@ -81,7 +81,7 @@ public:
 
 private:
     Reference draw(const Filter& filter) {
-        session_.techniques.choose("pcf");
+        session_.techniques.choose(irradianceReference);
         ParameterSet& parameters = session_.techniques.parameters();
         parameters.reset();
         parameters.at("shape").setText("gaussian");

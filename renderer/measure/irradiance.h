@@ -9,8 +9,12 @@
 #include "renderer/renderer.h"
 
 #include <optional>
+#include <string_view>
 
 namespace penumbra {
+
+// The technique that errors are against, with a kernel as wide.
+inline constexpr std::string_view irradianceReference = "pcf";
 
 struct IrradianceErrors {
     double mean = 0;     // |ψ − F|

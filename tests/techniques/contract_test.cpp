@@ -111,7 +111,7 @@ TEST_CASE("the empty floor is lit, level and at 45 degrees") {
 TEST_CASE("a closed lid makes the floor dark") {
     for (const Card* card : catalogue())
         for (const LightShape shape : {LightShape::Rectangle, LightShape::Disk, LightShape::Directional}) {
-            Session s = session(lidOverFloor(), card->id);
+            Session s = quickSession(lidOverFloor(), card->id);
             s.camera = {.eye = {1.5f, 1.2f, 1.5f}, .target = {0, 0, 0}, .fovY = 30};
             s.light.shape = shape;
             if (shape == LightShape::Directional) s.light.size = {2, 0};
@@ -276,7 +276,7 @@ TEST_CASE("the largest map works, or is refused with its name and size") {
 
 TEST_CASE("the same frame twice is the same to the last bit") {
     for (const Card* card : catalogue()) {
-        const Session s = session(boxesOverFloor(), card->id);
+        const Session s = quickSession(boxesOverFloor(), card->id);
         const ShadowImage first = draw(s);
         CHECK((draw(s).psi.values == first.psi.values)); // in brackets: a failure does not print them all
     }

@@ -22,7 +22,7 @@ there() { for _ in $(seq 50); do [[ -e $1 ]] && return 0; sleep 0.1; done; fail 
 # Sections folded above another do not move it when they change. Rows are 29 pixels high.
 scene=52 technique=81 parameters=110
 slider=1135 reset=1243 # of the rows below, from left to right
-firstGroup=145 searchTaps=174 filterTaps=232 slopeBias=505 resetAll=569
+firstGroup=145 searchTaps=174 filterTaps=232 slopeBias=534 resetAll=598
 
 start two-boxes --technique pcss --size 1280x720
 click 1000 $scene
