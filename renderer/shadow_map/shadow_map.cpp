@@ -56,9 +56,19 @@ struct Region {
     void bound(vec3 normal, vec3 through) { planes[planeCount++] = vec4(normal, -glm::dot(normal, through)); }
 };
 
-// What lies within of a box with these eight corners: its faces, cut by the planes in turn (Sutherland and Hodgman
-// 1974), and the region's tips if they are in the box.
+// What lies within of a box with these eight corners: mostly all of it or nothing. Else its faces, cut in turn by the
+// planes that run through it (Sutherland and Hodgman 1974), and the region's tips if they are in the box.
 Corners within(const Region& region, const Corners& box) {
+    std::array<vec4, 6> cutting;
+    size_t cuts = 0;
+    for (const vec4& plane : std::span(region.planes).first(region.planeCount)) {
+        const auto outside =
+            std::count_if(box.begin(), box.end(), [&](vec3 p) { return glm::dot(plane, vec4(p, 1)) < 0; });
+        if (outside == 8) return {};
+        if (outside > 0) cutting[cuts++] = plane;
+    }
+    if (cuts == 0) return box;
+
     static constexpr size_t faces[6][4] = {{0, 1, 3, 2}, {4, 5, 7, 6}, {0, 1, 5, 4},
                                            {2, 3, 7, 6}, {0, 2, 6, 4}, {1, 3, 7, 5}};
     Corners left;
@@ -66,7 +76,7 @@ Corners within(const Region& region, const Corners& box) {
         std::array<vec3, 10> polygon, cut; // each plane adds a corner at most
         size_t count = 0;
         for (const size_t i : face) polygon[count++] = box.points[i];
-        for (const vec4& plane : std::span(region.planes).first(region.planeCount)) {
+        for (const vec4& plane : std::span(cutting).first(cuts)) {
             size_t kept = 0;
             for (size_t i = 0; i < count; ++i) {
                 const vec3 from = polygon[i], to = polygon[(i + 1) % count];
@@ -89,22 +99,24 @@ Corners within(const Region& region, const Corners& box) {
     return left;
 }
 
-// The pyramid that a view shows, from its near plane on.
+// What a view can show, from its near plane on: a pyramid, or a box of parallel rays.
 Region shownBy(const View& view, const mat4& lightFromWorld) {
-    const vec3 across = float(view.size.x) * view.rayDx, upwards = float(view.size.y) * view.rayDy;
-    const std::array<vec3, 4> rays{view.rayCorner, view.rayCorner + across, view.rayCorner + across + upwards,
-                                   view.rayCorner + upwards};
-    const auto at = [&](vec3 ray, float depth) {
-        return fittingFromWorld(view.eyeWorld + depth * ray, lightFromWorld);
+    // The share of the picture's width and height, and the eye depth.
+    const auto at = [&](vec2 share, float depth) {
+        const vec2 pixel = share * vec2(view.size);
+        const vec3 from = view.eyeWorld + pixel.x * view.eyeDx + pixel.y * view.eyeDy;
+        const vec3 ray = view.rayCorner + pixel.x * view.rayDx + pixel.y * view.rayDy;
+        return fittingFromWorld(from + depth * ray, lightFromWorld);
     };
-    const vec3 eye = at(vec3(0), 0), inside = at(0.5f * (rays[0] + rays[2]), 2 * view.near);
+    static constexpr vec2 corners[4] = {{0, 0}, {1, 0}, {1, 1}, {0, 1}};
+    const vec3 inside = at(vec2(0.5f), 2 * view.near);
     Region region;
-    for (size_t i = 0; i < 4; ++i) region.tips[i] = at(rays[i], view.near);
+    for (size_t i = 0; i < 4; ++i) region.tips[i] = at(corners[i], view.near);
     const auto bound = [&](vec3 a, vec3 b, vec3 c) {
         const vec3 normal = glm::cross(b - a, c - a);
         region.bound(glm::dot(normal, inside - a) < 0 ? -normal : normal, a);
     };
-    for (size_t i = 0; i < 4; ++i) bound(eye, region.tips[i], region.tips[(i + 1) % 4]);
+    for (size_t i = 0; i < 4; ++i) bound(region.tips[i], region.tips[(i + 1) % 4], at(corners[i], 2 * view.near));
     bound(region.tips[0], region.tips[1], region.tips[2]);
     return region;
 }
