@@ -133,12 +133,7 @@ void MotionPanel::chart(ImVec2 size) const {
 
 void MotionPanel::progress() {
     const Progress& state = *measurement_.progress();
-    const float button = ImGui::CalcTextSize("Cancel").x + 2 * ImGui::GetStyle().FramePadding.x;
-    ImGui::ProgressBar(static_cast<float>(state.share()), {-button - ImGui::GetStyle().ItemSpacing.x, 0});
-    ImGui::SameLine();
-    ImGui::BeginDisabled(state.cancelled());
-    if (ImGui::Button("Cancel")) measurement_.stop();
-    ImGui::EndDisabled();
+    if (progressWithCancel(state)) measurement_.stop();
     tooltip("Stop here; what is measured is kept");
     text(colour::muted, state.cancelled() ? "stopping" : state.doing());
 }

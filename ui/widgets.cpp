@@ -75,6 +75,16 @@ void row(std::string_view label, float reserved) {
     ImGui::SetNextItemWidth(std::max(ImGui::GetContentRegionAvail().x - reserved, 1.0f));
 }
 
+bool progressWithCancel(const Progress& progress) {
+    const float button = ImGui::CalcTextSize("Cancel").x + 2 * ImGui::GetStyle().FramePadding.x;
+    ImGui::ProgressBar(static_cast<float>(progress.share()), {-button - ImGui::GetStyle().ItemSpacing.x, 0});
+    ImGui::SameLine();
+    ImGui::BeginDisabled(progress.cancelled());
+    const bool pressed = ImGui::Button("Cancel");
+    ImGui::EndDisabled();
+    return pressed;
+}
+
 bool pointedAt() {
     return ImGui::IsItemHovered(ImGuiHoveredFlags_AllowWhenDisabled) && !ImGui::IsMouseDown(ImGuiMouseButton_Left);
 }

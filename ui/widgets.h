@@ -3,6 +3,7 @@
 #pragma once
 
 #include "renderer/core/image.h"
+#include "renderer/core/progress.h"
 #include "ui/theme.h"
 
 #include <fmt/format.h>
@@ -53,6 +54,8 @@ void row(std::string_view label, float reserved = 0);
 // A tooltip of one paragraph for the item before.
 void tooltip(std::string_view paragraph);
 bool pointedAt();
+// How far something is, and a button to cancel it, which stays the last item: true when it is pressed.
+bool progressWithCancel(const Progress& progress);
 // Between Begin and EndTooltip: a width that long help is wrapped at.
 void beginHelp();
 void endHelp();

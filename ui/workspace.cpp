@@ -440,10 +440,7 @@ void Workspace::loadingBar(ImVec2 corner, float width, bool cancel) {
                           ImGuiWindowFlags_NoScrollbar | ImGuiWindowFlags_AlwaysUseWindowPadding)) {
         const std::string name = std::filesystem::path(loading_.nameOrFile).filename().string();
         text(ShortText("Loading {}: {}", name, progress.doing()).view());
-        const float button = ImGui::CalcTextSize("Cancel").x + 2 * ImGui::GetStyle().FramePadding.x;
-        ImGui::ProgressBar(static_cast<float>(progress.share()), {-button - ImGui::GetStyle().ItemSpacing.x, 0});
-        ImGui::SameLine();
-        cancel = ImGui::Button("Cancel") || cancel;
+        cancel = progressWithCancel(progress) || cancel;
         tooltip("Keep the scene that is shown (Esc)");
     }
     ImGui::EndChild();
