@@ -210,7 +210,9 @@ Json resultJson(const SettingResult& result, const Json& truth, bool motion) {
         for (size_t i = eventFrame; i < result.frames.size(); ++i)
             since.push_back(result.frames[i].errors->penumbra.rmse);
         const Ghost ghost = ghostOf(since);
-        json["ghost"] = {{"peak", ghost.peak}, {"settled", ghost.settled}, {"half_life", ghost.halfLife}};
+        json["ghost"] = {{"peak", ghost.peak},
+                         {"settled", ghost.settled},
+                         {"half_life", ghost.halfLife ? Json(*ghost.halfLife) : Json()}};
     }
     if (!result.trouble.empty()) json["trouble"] = result.trouble;
     return json;

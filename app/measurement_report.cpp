@@ -138,10 +138,12 @@ std::string ghosts(const Json& results) {
     std::string text;
     for (const Json& result : results)
         if (const Json& ghost = at(result, "/ghost"); ghost.is_object()) {
-            text += fmt::format(
-                "{}: penumbra RMSE at most {:.4f} after the event, {:.4f} in the end; frames to half of "
-                "the way: {}",
-                rowText(result), numberAt(ghost, "/peak"), numberAt(ghost, "/settled"), plain(at(ghost, "/half_life")));
+            const std::string halfLife = plain(at(ghost, "/half_life"));
+            text +=
+                fmt::format("{}: penumbra RMSE at most {:.4f} after the event, {:.4f} in the end; frames to half of "
+                            "the way: {}",
+                            rowText(result), numberAt(ghost, "/peak"), numberAt(ghost, "/settled"),
+                            halfLife.empty() ? "–" : halfLife);
             if (const Json& flicker = at(result, "/error/flicker"); flicker.is_number())
                 text += fmt::format("; flicker {:.4f}", flicker.get<double>());
             text += "\n";

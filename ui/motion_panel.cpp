@@ -119,10 +119,10 @@ void MotionPanel::chart(ImVec2 size) const {
         // Where the ghost has lost half of its height.
         const Ghost ghost = ghostOf(std::span(errors).subspan(eventFrame));
         list.AddLine(plot.at(0, ghost.settled), plot.at(most, ghost.settled), faded(ink, 0.35f), 0.08f * em);
-        if (ghost.halfLife == 0) continue;
+        if (!ghost.halfLife) continue;
         const auto peak = std::max_element(errors.begin() + eventFrame, errors.end());
-        const size_t at = static_cast<size_t>(peak - errors.begin()) + static_cast<size_t>(ghost.halfLife);
-        if (at < errors.size()) list.AddCircle(point(at), 0.38f * em, ImGui::GetColorU32(ink), 0, 0.1f * em);
+        const size_t at = static_cast<size_t>(peak - errors.begin()) + static_cast<size_t>(*ghost.halfLife);
+        list.AddCircle(point(at), 0.38f * em, ImGui::GetColorU32(ink), 0, 0.1f * em);
     }
     if (longest > eventFrame - framesBefore) return;
     const std::string_view hint = measuring() ? "the view rests…" : "Nothing is measured yet";
@@ -199,15 +199,11 @@ void MotionPanel::numbers() const {
             line("At rest", ShortText("{:.4f}", errors[eventFrame - 1]), "RMSE of the last frame before the event");
             line("Peak", ShortText("{:.4f}", ghost.peak), "The largest RMSE from the event on");
             line("Settled", ShortText("{:.4f}", ghost.settled), "Mean RMSE of the last quarter of the frames");
-            const auto since = std::span(errors).subspan(eventFrame);
-            const auto peak = std::max_element(since.begin(), since.end()) - since.begin();
-            const bool lasting = static_cast<size_t>(peak + ghost.halfLife) >= since.size(); // to the end
             line("Half-life",
-                 ghost.halfLife == 0 ? ShortText("–")
-                 : lasting           ? ShortText("not reached")
-                                     : ShortText("{} frame{}", ghost.halfLife, ghost.halfLife == 1 ? "" : "s"),
+                 ghost.halfLife ? ShortText("{} frame{}", *ghost.halfLife, *ghost.halfLife == 1 ? "" : "s")
+                                : ShortText("–"),
                  "Frames from the peak until the RMSE is half way to where it settles (ringed); – where there is "
-                 "nothing to get over");
+                 "nothing to get over, or it is not reached");
             line("Flicker", course.flicker ? ShortText("{:.4f}", *course.flicker) : ShortText("–"),
                  "Mean change of ψ from frame to frame beyond that of the truth, over the second half of all frames; "
                  "not for "

@@ -63,10 +63,12 @@ Ghost ghostOf(std::span<const double> errors) {
     if (errors.empty()) return {};
     const size_t quarter = std::max<size_t>(errors.size() / 4, 1);
     const auto peak = std::max_element(errors.begin(), errors.end());
-    Ghost ghost{*peak, std::accumulate(errors.end() - std::ptrdiff_t(quarter), errors.end(), 0.0) / double(quarter), 0};
+    Ghost ghost{
+        *peak, std::accumulate(errors.end() - std::ptrdiff_t(quarter), errors.end(), 0.0) / double(quarter), {}};
     if (ghost.peak - ghost.settled < 0.05 * ghost.peak) return ghost; // there is nothing to get over
     const double half = 0.5 * (ghost.peak + ghost.settled);
-    ghost.halfLife = int(std::find_if(peak, errors.end(), [&](double e) { return e <= half; }) - peak);
+    const auto there = std::find_if(peak, errors.end(), [&](double e) { return e <= half; });
+    if (there != errors.end()) ghost.halfLife = int(there - peak);
     return ghost;
 }
 

@@ -5,6 +5,7 @@
 
 #include "renderer/session.h"
 
+#include <optional>
 #include <span>
 #include <string_view>
 
@@ -35,8 +36,9 @@ void place(MotionEvent motion, const Rest& start, int frame, Session& session);
 struct Ghost {
     double peak = 0;    // the largest
     double settled = 0; // mean of the last quarter
-    int halfLife =
-        0; // frames from the peak until the error is half way from there to `settled`; 0 if they hardly differ
+    // Frames from the peak until the error is half way from there to `settled`; none where they hardly differ or the
+    // peak comes so late that the half is not reached.
+    std::optional<int> halfLife;
 };
 Ghost ghostOf(std::span<const double> errors);
 

@@ -61,7 +61,8 @@ TEST_CASE("a ghost's half-life is counted from the peak to half way down to wher
     CHECK(ghost.peak == Approx(0.17));
     CHECK(ghost.settled == Approx(0.01).margin(1e-4));
     CHECK(ghost.halfLife == 3);
-    CHECK(ghostOf({}).halfLife == 0);
-    CHECK(ghostOf(std::vector<double>(8, 0.02)).halfLife == 0);
-    CHECK(ghostOf(std::vector<double>{0.0201, 0.02, 0.02, 0.02, 0.02, 0.02, 0.02, 0.02}).halfLife == 0);
+    CHECK_FALSE(ghostOf({}).halfLife);
+    CHECK_FALSE(ghostOf(std::vector<double>(8, 0.02)).halfLife);
+    CHECK_FALSE(ghostOf(std::vector<double>{0.0201, 0.02, 0.02, 0.02, 0.02, 0.02, 0.02, 0.02}).halfLife);
+    CHECK_FALSE(ghostOf(std::vector<double>{0.02, 0.02, 0.02, 0.02, 0.02, 0.02, 0.02, 0.1}).halfLife); // still rising
 }
