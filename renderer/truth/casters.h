@@ -28,7 +28,7 @@ public:
 
     // What casts is what the scene shows: both faces of triangles of two-sided materials and of closed surfaces, else
     // the front; points of masked materials that do not exist let rays pass. Rays go from a surface to the light.
-    void occluded(const int* valid, RTCRay16& rays) const { occluded16(scene_, valid, rays); }
+    void occluded(const int* valid, RTCRay8& rays) const { occluded8(scene_, valid, rays); }
 
     // Built when it is asked for first: a first picture needs none.
     const Shafts& shafts() const;

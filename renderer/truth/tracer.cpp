@@ -25,9 +25,11 @@ using glm::vec3;
 } // namespace glsl
 #pragma GCC diagnostic pop
 
-constexpr int lanes = 16;
-constexpr int tile = 8;      // pixels along a side
-constexpr size_t piece = 64; // points that a thread takes at once
+constexpr int lanes = 8;           // rays of a packet
+constexpr uint32_t batch = 256;    // rays of a pixel that are sorted together, at most
+constexpr uint32_t firstRays = 16; // of a pixel; numbers of rays are multiples of it
+constexpr int tile = 8;            // pixels along a side
+constexpr size_t piece = 64;       // points that a thread takes at once
 
 uint64_t mixed(uint64_t x) { // finalisation of splitmix64 (Steele et al. 2014)
     x += 0x9e3779b97f4a7c15;
@@ -36,7 +38,7 @@ uint64_t mixed(uint64_t x) { // finalisation of splitmix64 (Steele et al. 2014)
     return x ^ (x >> 31);
 }
 
-uint32_t roundedUp(uint32_t rays) { return (rays + lanes - 1) / lanes * lanes; }
+uint32_t roundedUp(uint32_t rays) { return (rays + firstRays - 1) / firstRays * firstRays; }
 
 } // namespace
 
@@ -111,7 +113,27 @@ Tracer::Tracer(const TruthInput& input, const TruthSettings& settings, const Cas
     truth_.classes = classesOf(input);
     findPoints();
     asked_ = points_.size();
-    askAll();
+    askOfBlocks();
+}
+
+size_t Tracer::blockOf(uint32_t pixel) const {
+    const auto width = static_cast<uint32_t>(truth_.width);
+    return size_t(pixel / width / 2) * ((width + 1) / 2) + pixel % width / 2;
+}
+
+// A few rays of one point in each block of 2x2 pixels, for a picture as soon as can be.
+void Tracer::askOfBlocks() {
+    constexpr uint32_t none = ~0u;
+    pixelOfBlock_.assign(static_cast<size_t>((truth_.width + 1) / 2) * static_cast<size_t>((truth_.height + 1) / 2),
+                         none);
+    for (uint32_t i = 0; i < points_.size(); ++i) {
+        uint32_t& pixel = pixelOfBlock_[blockOf(points_[i].pixel)];
+        if (pixel != none) continue;
+        pixel = points_[i].pixel;
+        points_[i].wanted = firstRays;
+        unfinished_.push_back(i);
+    }
+    raysForeseen_ = points_.size() * roundedUp(static_cast<uint32_t>(settings_.leastSamples));
 }
 
 // The least number of rays of every point.
@@ -188,24 +210,23 @@ void Tracer::dropCertain() {
 
 namespace {
 
-// What the directions of a packet are made of; lanes are truthReplicates of one point of the sequence, then of the
-// next.
-struct Aim {
-    alignas(64) float shiftX[lanes], shiftY[lanes];
-    glm::vec3 centre, sideX, sideY; // a point of the light is in the direction centre + x sideX + y sideY
+// Points of the light to which rays of one pixel go together, each coordinate in [-1, 1]: the replicates of one point
+// of the sequence, then those of the next.
+struct Aims {
+    alignas(64) float x[batch], y[batch];
+    uint8_t order[batch];
 };
 
-// Aims a packet at the points from `haltonX`, `haltonY` on, as scene/light.h's lightPoint() has them.
-template <bool round> inline void aimAt(const Aim& aim, const float* haltonX, const float* haltonY, RTCRay16& rays) {
-    for (int i = 0; i < lanes; ++i) {
-        float u = haltonX[i / truthReplicates] + aim.shiftX[i], v = haltonY[i / truthReplicates] + aim.shiftY[i];
-        u -= u >= 1 ? 1.0f : 0.0f;
-        v -= v >= 1 ? 1.0f : 0.0f;
-        PlanePoint p{2 * u - 1, 2 * v - 1};
-        if constexpr (round) p = concentricDisk(p);
-        rays.dir_x[i] = aim.centre.x + p.x * aim.sideX.x + p.y * aim.sideY.x;
-        rays.dir_y[i] = aim.centre.y + p.x * aim.sideX.y + p.y * aim.sideY.y;
-        rays.dir_z[i] = aim.centre.z + p.x * aim.sideX.z + p.y * aim.sideY.z;
+template <bool round> inline void shiftPoints(const float* haltonX, const float* haltonY, const float* shiftX,
+                                              const float* shiftY, uint32_t count, float* __restrict x,
+                                              float* __restrict y) {
+    for (uint32_t i = 0; i < count; i += truthReplicates)
+        for (uint32_t k = 0; k < truthReplicates; ++k)
+            x[i + k] = haltonX[i / truthReplicates] + shiftX[k], y[i + k] = haltonY[i / truthReplicates] + shiftY[k];
+    for (uint32_t i = 0; i < count; ++i) {
+        PlanePoint p{2 * (x[i] - (x[i] >= 1 ? 1.0f : 0.0f)) - 1, 2 * (y[i] - (y[i] >= 1 ? 1.0f : 0.0f)) - 1};
+        if constexpr (round) p = concentricDisk(p); // as scene/light.h's lightPoint() has it
+        x[i] = p.x, y[i] = p.y;
     }
 }
 
@@ -216,11 +237,30 @@ template <bool round> inline void aimAt(const Aim& aim, const float* haltonX, co
 #else
 #define WIDE_TOO
 #endif
-WIDE_TOO void aimAtRectangle(const Aim& aim, const float* haltonX, const float* haltonY, RTCRay16& rays) {
-    aimAt<false>(aim, haltonX, haltonY, rays);
+WIDE_TOO void shiftOnRectangle(const float* haltonX, const float* haltonY, const float* shiftX, const float* shiftY,
+                               uint32_t count, Aims& aims) {
+    shiftPoints<false>(haltonX, haltonY, shiftX, shiftY, count, aims.x, aims.y);
 }
-WIDE_TOO void aimAtDisk(const Aim& aim, const float* haltonX, const float* haltonY, RTCRay16& rays) {
-    aimAt<true>(aim, haltonX, haltonY, rays);
+WIDE_TOO void shiftOnDisk(const float* haltonX, const float* haltonY, const float* shiftX, const float* shiftY,
+                          uint32_t count, Aims& aims) {
+    shiftPoints<true>(haltonX, haltonY, shiftX, shiftY, count, aims.x, aims.y);
+}
+
+// Orders the first `count` by the cells of a grid, along a curve that fills the light: a packet of rays to near points
+// meets the same boxes of the hierarchy.
+void sortPoints(uint32_t count, Aims& aims) {
+    constexpr uint32_t side = 8;
+    constexpr uint8_t spread[side] = {0, 1, 4, 5, 16, 17, 20, 21}; // the bits of a coordinate, with a gap behind each
+    uint8_t cell[batch];
+    uint16_t next[side * side + 1] = {};
+    for (uint32_t i = 0; i < count; ++i) {
+        const auto x = std::min(static_cast<uint32_t>((aims.x[i] + 1) * (side / 2)), side - 1);
+        const auto y = std::min(static_cast<uint32_t>((aims.y[i] + 1) * (side / 2)), side - 1);
+        cell[i] = static_cast<uint8_t>(spread[x] | spread[y] << 1);
+        ++next[cell[i] + 1];
+    }
+    for (uint32_t c = 0; c < side * side; ++c) next[c + 1] = static_cast<uint16_t>(next[c + 1] + next[c]);
+    for (uint32_t i = 0; i < count; ++i) aims.order[next[cell[i]]++] = static_cast<uint8_t>(i);
 }
 
 } // namespace
@@ -229,41 +269,47 @@ WIDE_TOO void aimAtDisk(const Aim& aim, const float* haltonX, const float* halto
 void Tracer::trace(Point& point) const {
     const glm::vec3 o = point.originWorld, n = point.normalWorld;
     const bool cut = n != glm::vec3(0);
-    Aim aim;
-    aim.centre = directional_ ? lightCentre_ : lightCentre_ - o;
-    aim.sideX = lightX_ * halfLight_.x, aim.sideY = lightY_ * halfLight_.y;
+    const glm::vec3 centre = directional_ ? lightCentre_ : lightCentre_ - o;
+    const glm::vec3 sideX = lightX_ * halfLight_.x, sideY = lightY_ * halfLight_.y;
     // What lies in the plane of the light itself, such as the pane of a lamp, is not before it.
     const float farthest = directional_ ? std::numeric_limits<float>::infinity() : 1 - 0x1p-16f;
-    RTCRay16 rays;
-    alignas(64) int valid[lanes];
+    float shiftX[truthReplicates], shiftY[truthReplicates];
+    for (size_t i = 0; i < truthReplicates; ++i) {
+        const uint64_t bits = mixed(mixed(input_.seed * truthReplicates + i) + point.pixel);
+        shiftX[i] = static_cast<float>(bits >> 40) * 0x1p-24f;
+        shiftY[i] = static_cast<float>(bits >> 16 & 0xffffff) * 0x1p-24f;
+    }
+    RTCRay8 rays;
+    alignas(32) int valid[lanes];
     for (int i = 0; i < lanes; ++i) {
-        const auto replicate = static_cast<uint64_t>(i % truthReplicates);
-        const uint64_t bits = mixed(mixed(input_.seed * truthReplicates + replicate) + point.pixel);
-        aim.shiftX[i] = static_cast<float>(bits >> 40) * 0x1p-24f;
-        aim.shiftY[i] = static_cast<float>(bits >> 16 & 0xffffff) * 0x1p-24f;
         rays.org_x[i] = o.x, rays.org_y[i] = o.y, rays.org_z[i] = o.z;
         rays.tnear[i] = rays.time[i] = 0;
         rays.mask[i] = ~0u, rays.id[i] = rays.flags[i] = 0;
         valid[i] = -1;
     }
 
-    int hidden[lanes] = {};
-    for (; point.rays < point.wanted; point.rays += lanes) {
-        const uint32_t first = point.rays / truthReplicates;
-        (round_ ? aimAtDisk : aimAtRectangle)(aim, haltonX_.data() + first, haltonY_.data() + first, rays);
-        for (int i = 0; i < lanes; ++i) rays.tfar[i] = farthest;
-        if (cut)
+    Aims aims;
+    while (point.rays < point.wanted) {
+        const uint32_t count = std::min(point.wanted - point.rays, batch), first = point.rays / truthReplicates;
+        (round_ ? shiftOnDisk : shiftOnRectangle)(haltonX_.data() + first, haltonY_.data() + first, shiftX, shiftY,
+                                                  count, aims);
+        sortPoints(count, aims);
+        for (uint32_t packet = 0; packet < count; packet += lanes) {
+            const uint8_t* order = aims.order + packet;
+            alignas(32) float x[lanes], y[lanes];
+            for (int i = 0; i < lanes; ++i) x[i] = aims.x[order[i]], y[i] = aims.y[order[i]];
             for (int i = 0; i < lanes; ++i) {
-                const bool above = n.x * rays.dir_x[i] + n.y * rays.dir_y[i] + n.z * rays.dir_z[i] > 0;
-                valid[i] = above ? -1 : 0;
-                hidden[i] += above ? 0 : 1;
+                rays.dir_x[i] = centre.x + x[i] * sideX.x + y[i] * sideY.x;
+                rays.dir_y[i] = centre.y + x[i] * sideX.y + y[i] * sideY.y;
+                rays.dir_z[i] = centre.z + x[i] * sideX.z + y[i] * sideY.z;
+                rays.tfar[i] = farthest;
+                if (cut) valid[i] = n.x * rays.dir_x[i] + n.y * rays.dir_y[i] + n.z * rays.dir_z[i] > 0 ? -1 : 0;
             }
-        casters_.occluded(valid, rays);
-        for (int i = 0; i < lanes; ++i) hidden[i] += rays.tfar[i] < 0 ? valid[i] & 1 : 0;
-    }
-    for (int i = 0; i < lanes; ++i) {
-        uint16_t& sum = point.hidden[static_cast<size_t>(i % truthReplicates)];
-        sum = static_cast<uint16_t>(sum + hidden[i]);
+            casters_.occluded(valid, rays);
+            for (int i = 0; i < lanes; ++i)
+                point.hidden[order[i] % truthReplicates] += valid[i] == 0 || rays.tfar[i] < 0 ? 1 : 0;
+        }
+        point.rays += count;
     }
 }
 
@@ -307,6 +353,9 @@ void Tracer::estimate() {
             truth_.standardError[point.pixel] = found.standardError;
         }
     });
+    if (raysOfAll_ == 0)
+        for (const Point& point : points_)
+            if (point.rays == 0) truth_.psi[point.pixel] = truth_.psi[pixelOfBlock_[blockOf(point.pixel)]];
     truth_.samplesLeast = truth_.samplesMost = points_.empty() ? 0 : static_cast<int>(points_[0].rays);
     double errors = 0;
     truth_.penumbraPixels = 0;
@@ -321,22 +370,23 @@ void Tracer::estimate() {
     truth_.meanPenumbraStandardError = truth_.penumbraPixels ? errors / truth_.penumbraPixels : 0;
 }
 
-// Decides how many rays each pixel gets this round. All get 16, 64 ... up to the least number, so that there is a
-// picture soon. Then those get more whose standard error is above the wanted one. It is judged by the mean variance of
+// Decides how many rays each pixel gets this round. A quarter get 16, then all, then all get 64 ... up to the least
+// number. Then those get more whose standard error is above the wanted one. It is judged by the mean variance of
 // the 3x3 pixels around: that of one pixel's eight replicates is itself so uncertain that those which seem good by
 // chance would be left alone; and a pixel whose rays all agree beside one whose rays do not is not certain.
 bool Tracer::plan() {
     const auto least = roundedUp(static_cast<uint32_t>(settings_.leastSamples));
     const auto most = std::max(least, roundedUp(static_cast<uint32_t>(settings_.mostSamples)));
     if (points_.empty()) return false;
-    if (points_[0].rays < least) {
-        const uint32_t now = points_[0].rays;
-        if (now == lanes && settings_.shafts) {
+    if (raysTraced_ == 0) return true; // the constructor has asked
+    if (raysOfAll_ < least) {
+        if (raysOfAll_ == firstRays && settings_.shafts)
             dropCertain();
-            if (points_.empty()) return false;
-        }
-        const uint32_t step = now == 0 ? lanes : std::min(3 * now, 64u);
-        for (Point& point : points_) point.wanted = std::min(now + step, least);
+        else
+            askAll();
+        if (points_.empty()) return false;
+        raysOfAll_ = raysOfAll_ == 0 ? firstRays : std::min({4 * raysOfAll_, raysOfAll_ + 192, least});
+        for (Point& point : points_) point.wanted = raysOfAll_;
         return true;
     }
     unfinished_.clear();

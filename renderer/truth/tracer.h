@@ -30,6 +30,8 @@ private:
         std::array<uint16_t, truthReplicates> hidden{};
     };
     void findPoints();
+    size_t blockOf(uint32_t pixel) const;
+    void askOfBlocks();
     void askAll();
     void dropCertain();
     void trace(Point& point) const;
@@ -45,10 +47,12 @@ private:
     bool directional_ = false, round_ = false;
     glm::vec2 halfLight_{0};
     std::vector<float> haltonX_, haltonY_;
-    std::vector<Point> points_;        // in small squares of pixels
-    std::vector<uint32_t> squares_;    // the first of the points of each, and their end; before any is dropped
-    std::vector<uint32_t> unfinished_; // of points_, this round
-    std::vector<float> spread_;        // by pixel; see plan()
+    std::vector<Point> points_;          // in small squares of pixels
+    std::vector<uint32_t> squares_;      // the first of the points of each, and their end; before any is dropped
+    std::vector<uint32_t> unfinished_;   // of points_, this round
+    std::vector<uint32_t> pixelOfBlock_; // of each 2x2 pixels the one that is traced first
+    uint32_t raysOfAll_ = 0;             // that every point has had, or has this round
+    std::vector<float> spread_;          // by pixel; see plan()
     Truth truth_;
     size_t asked_ = 0; // how many points there were at first
     uint64_t raysTraced_ = 0, raysForeseen_ = 0;
