@@ -35,7 +35,8 @@ ShortText widthText(const Snapshot& shot, glm::vec2 from, glm::vec2 to, std::spa
     const float pixels = glm::distance(low, high);
     const auto lowWorld = surfaceWorld(shot.view, shot.depth, low),
                highWorld = surfaceWorld(shot.view, shot.depth, high);
-    if (!lowWorld || !highWorld) return ShortText("{:.1f} px", pixels);
+    if (!lowWorld || !highWorld || !onOneSurface(shot.view, shot.depth, low, high))
+        return ShortText("{:.1f} px   on two surfaces", pixels);
     return ShortText("{:.1f} px   {:.3g} m", pixels, glm::distance(*lowWorld, *highWorld));
 }
 

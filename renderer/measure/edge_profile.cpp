@@ -80,4 +80,29 @@ std::optional<glm::vec3> surfaceWorld(const View& view, std::span<const float> d
     return view.eyeWorld + eyeDepth * (view.rayCorner + fromBelow.x * view.rayDx + fromBelow.y * view.rayDy);
 }
 
+// From pixel to pixel. Along a plane 1 / depth grows by the same amount at each step in one direction; on curved
+// surfaces by about the same, at a fold as before it or as after it; over a silhouette by far more than just before and
+// just after.
+bool onOneSurface(const View& view, std::span<const float> depth, glm::vec2 from, glm::vec2 to) {
+    constexpr float times = 3, noise = 0.002f; // of 1 / depth: lower bumps are of one surface
+    const auto inverse = [&](glm::ivec2 pixel) {
+        const glm::ivec2 p = glm::clamp(pixel, glm::ivec2(0), view.size - 1);
+        return 1 / depth[static_cast<size_t>(p.y) * static_cast<size_t>(view.size.x) + static_cast<size_t>(p.x)];
+    };
+    const int steps = static_cast<int>(std::ceil(std::max(std::abs(to.x - from.x), std::abs(to.y - from.y))));
+    glm::ivec2 last(glm::floor(from));
+    for (int i = 1; i <= steps; ++i) {
+        const glm::ivec2 pixel(
+            glm::floor(glm::mix(from, to, static_cast<float>(i) / static_cast<float>(std::max(steps, 1)))));
+        const glm::ivec2 step = pixel - last;
+        const float here = inverse(last), growth = inverse(pixel) - here;
+        const auto alike = [&](float other) { return growth * other > 0 ? std::abs(other) : 0.0f; };
+        const float around =
+            std::max(alike(here - inverse(last - step)), alike(inverse(pixel + step) - inverse(pixel)));
+        if (!std::isfinite(growth) || std::abs(growth) > times * around + noise * here) return false;
+        last = pixel;
+    }
+    return true;
+}
+
 } // namespace penumbra

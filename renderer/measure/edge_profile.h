@@ -27,5 +27,8 @@ std::optional<EdgeWidth> edgeWidth(std::span<const float> profile);
 // The surface at a point of the picture, from eye depths, row 0 at the top: between the centres of pixels 1 / depth is
 // interpolated, which is exact on a plane. Nothing where the nearest pixel shows no surface.
 std::optional<glm::vec3> surfaceWorld(const View& view, std::span<const float> depth, glm::vec2 place);
+// Whether one surface goes on from one point of the picture to another. Where a nearer one ends between them, the
+// distance of their points says nothing of a penumbra's width.
+bool onOneSurface(const View& view, std::span<const float> depth, glm::vec2 from, glm::vec2 to);
 
 } // namespace penumbra

@@ -114,3 +114,50 @@ TEST_CASE("a place of the picture is the point of the surface there, to the last
     std::fill(depth.begin(), depth.end(), 0.0f);
     CHECK_FALSE(surfaceWorld(view, depth, {10, 40}));
 }
+
+TEST_CASE("where a nearer surface ends on the way, the ruler measures no metres") {
+    const glm::ivec2 size(64, 48);
+    const View view = makeView({.eye = {0, 2, 5}, .target = {0, 0, 0}}, size, 0.01f, 100);
+    const auto rayOf = [&](glm::vec2 p) {
+        return view.rayCorner + p.x * view.rayDx + (static_cast<float>(size.y) - p.y) * view.rayDy;
+    };
+    const auto floor = [&](glm::vec2 p) { return rayOf(p).y < 0 ? -view.eyeWorld.y / rayOf(p).y : 0.0f; };
+    const glm::vec2 low(30, 46), high(36, 16); // over most of the floor, far into its distance
+    const auto isOne = [&](const std::vector<float>& depth) { return onOneSurface(view, depth, low, high); };
+    const std::vector<float> plane = image(size, floor);
+    REQUIRE(*std::max_element(plane.begin(), plane.end()) > 20);
+    CHECK(isOne(plane));
+    SECTION("a wall that stands on it goes on from it") {
+        const auto wall = [&](glm::vec2 p) { return std::min(floor(p) > 0 ? floor(p) : 100, 6 / -rayOf(p).z); };
+        CHECK(isOne(image(size, wall)));
+    }
+    SECTION("a ball that lies before it does not") {
+        // |eye + t ray − centre|² = r²
+        const glm::vec3 centre(0, 1, 1), from = view.eyeWorld - centre;
+        const auto ball = [&](glm::vec2 p) {
+            const glm::vec3 ray = rayOf(p);
+            const float a = glm::dot(ray, ray), b = glm::dot(ray, from), c = glm::dot(from, from) - 1;
+            const float root = b * b - a * c;
+            return root > 0 ? (-b - std::sqrt(root)) / a : floor(p);
+        };
+        const std::vector<float> depth = image(size, ball);
+        CHECK_FALSE(isOne(depth));
+        const glm::vec2 middle(32, 24); // and on the ball alone it is one
+        CHECK(onOneSurface(view, depth, middle, middle + glm::vec2(6, 2)));
+    }
+    SECTION("nor does a pole of one pixel, or a board that lies on it") {
+        std::vector<float> pole = plane;
+        for (size_t x = 0; x < 64; ++x) pole[30 * 64 + x] = 0.5f * plane[30 * 64 + x];
+        CHECK_FALSE(isOne(pole));
+        std::vector<float> board = plane;
+        for (size_t y = 30; y < 40; ++y)
+            for (size_t x = 0; x < 64; ++x) board[y * 64 + x] *= 0.9f;
+        CHECK_FALSE(isOne(board));
+    }
+    SECTION("nor does the sky") {
+        std::vector<float> sky = plane;
+        std::fill(sky.begin(), sky.begin() + 20 * 64, 0.0f);
+        CHECK_FALSE(isOne(sky));
+        CHECK(onOneSurface(view, sky, low, low));
+    }
+}
