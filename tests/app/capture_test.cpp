@@ -12,6 +12,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <set>
 
 using namespace penumbra;
 using namespace penumbra::test;
@@ -364,10 +365,12 @@ TEST_CASE("the result is told as JSON") {
 TEST_CASE("every buffer of every technique can be written raw and finite") {
     const TemporaryFolder folder;
     const nlohmann::json listing = nlohmann::json::parse(runProgram({"list", "--json", "two-boxes"}).output);
+    std::set<std::string> seen;
     for (const nlohmann::json& technique : listing.at("techniques"))
         for (const nlohmann::json& buffer : technique.at("buffers")) {
             const std::string label = buffer.at("label");
             INFO(label);
+            if (!seen.insert(label).second) continue; // such as the scene's, which all have
             captured(folder / "a.npy", {"--technique", technique.at("id"), "--buffer", label});
             const ReadPicture picture = readNpy(folder / "a.npy");
             CHECK(picture.channels.size() == buffer.at("channels").size());

@@ -188,41 +188,40 @@ TEST_CASE("sweeps make rows, and parts of them join to the whole") {
     CHECK(errorsIn(joined) == errorsIn(whole));
     CHECK(joined.at("view") == whole.at("view"));
 
-    SECTION("as a table and as values with commas too") {
-        merge[1] = "--csv";
-        CHECK(linesOf(runProgram(merge).output).size() == 8);
-        merge.erase(merge.begin() + 1);
-        CHECK(contains(runProgram(merge).output, "penumbra"));
-    }
-    SECTION("but not a part with itself, or with one of something else") {
-        const std::string first = folder / "1.json", other = folder / "other.json";
-        requireRefused({"measure", "--merge", first, first}, {first, "as well"});
-        const json original = json::parse(readAll(first));
-        const auto refuse = [&](const json& changed, const std::string& reason) {
-            writeAll(other, changed.dump());
-            requireRefused({"measure", "--merge", folder / "2.json", other}, {other, reason});
-        };
-        json changed = original;
-        changed["version"] = "0.0.1";
-        refuse(changed, "version");
-        changed = original;
-        changed["scene"] = "courtyard";
-        refuse(changed, "scene");
-        changed = original;
-        changed["view"]["hash"] = "0";
-        refuse(changed, "view/hash");
-        changed = original;
-        changed["results"][0]["error"]["against"] = "samples";
-        refuse(changed, "another truth");
-        refuse(json::array(), "penumbra measure --json");
-        refuse(json{{"program", "penumbra"}}, "penumbra measure --json");
-        changed = original;
-        changed["results"][0] = 7;
-        refuse(changed, "results");
-        writeAll(other, readAll(first).substr(0, 100));
-        requireRefused({"measure", "--merge", other}, {other, "parse error"});
-        requireRefused({"measure", "--merge", folder / "none.json"}, {"none.json", "No such file"});
-    }
+    // As a table and as values with commas too.
+    merge[1] = "--csv";
+    CHECK(linesOf(runProgram(merge).output).size() == 8);
+    merge.erase(merge.begin() + 1);
+    CHECK(contains(runProgram(merge).output, "penumbra"));
+
+    // But not a part with itself, or with one of something else.
+    const std::string first = folder / "1.json", other = folder / "other.json";
+    requireRefused({"measure", "--merge", first, first}, {first, "as well"});
+    const json original = json::parse(readAll(first));
+    const auto refuse = [&](const json& changed, const std::string& reason) {
+        writeAll(other, changed.dump());
+        requireRefused({"measure", "--merge", folder / "2.json", other}, {other, reason});
+    };
+    json changed = original;
+    changed["version"] = "0.0.1";
+    refuse(changed, "version");
+    changed = original;
+    changed["scene"] = "courtyard";
+    refuse(changed, "scene");
+    changed = original;
+    changed["view"]["hash"] = "0";
+    refuse(changed, "view/hash");
+    changed = original;
+    changed["results"][0]["error"]["against"] = "samples";
+    refuse(changed, "another truth");
+    refuse(json::array(), "penumbra measure --json");
+    refuse(json{{"program", "penumbra"}}, "penumbra measure --json");
+    changed = original;
+    changed["results"][0] = 7;
+    refuse(changed, "results");
+    writeAll(other, readAll(first).substr(0, 100));
+    requireRefused({"measure", "--merge", other}, {other, "parse error"});
+    requireRefused({"measure", "--merge", folder / "none.json"}, {"none.json", "No such file"});
 }
 
 TEST_CASE("tables and values with commas have a row for each combination") {
@@ -381,12 +380,13 @@ TEST_CASE("bad input to measure is refused in one line") {
 TEST_CASE("an interrupted measurement keeps what is done") {
     const TemporaryFolder folder;
     const std::string output = folder / "output", errors = folder / "errors";
-    // Far too many frames; the interrupt comes when measuring has begun, and once: a second one would end the program,
-    // and timeout sends it to the whole group of processes too if it is not told that it runs in the foreground.
-    const std::string line = "timeout --foreground -s INT 20 '" PENUMBRA_PROGRAM
+    // Far too many frames; the interrupt comes when measuring has begun. What a shell starts in the background is deaf
+    // to it unless told otherwise.
+    const std::string line = "env --default-signal=INT '" PENUMBRA_PROGRAM
                              "' measure two-boxes --size 48x32 --samples 128 "
                              "--techniques none,hard --frames 1000000 --json > '" +
-                             output + "' 2> '" + errors + "'";
+                             output + "' 2> '" + errors + "' & until grep -q measuring '" + errors +
+                             "' || ! kill -0 $!; do sleep 0.1; done; sleep 2; kill -INT $!; wait $!";
     std::system(line.c_str());
     INFO(readAll(errors));
     CHECK(contains(readAll(errors), "interrupted; 2 of 2 rows are kept"));

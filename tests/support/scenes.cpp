@@ -164,6 +164,12 @@ Session session(std::shared_ptr<const Scene> scene, std::string_view technique) 
     return s;
 }
 
+Session quickSession(std::shared_ptr<const Scene> scene, std::string_view technique) {
+    Session s = session(std::move(scene), technique);
+    if (Parameter* size = s.techniques.parameters().find("map-size")) size->set(quickMap);
+    return s;
+}
+
 glm::vec3 ShadowImage::positionWorld(int x, int y) const {
     const float px = static_cast<float>(x) + 0.5f, py = static_cast<float>(psi.height - 1 - y) + 0.5f;
     return view.eyeWorld + depth.values[index(x, y)] * (view.rayCorner + px * view.rayDx + py * view.rayDy);

@@ -38,9 +38,12 @@ private:
 // box stands beside it.
 std::shared_ptr<Scene> wavingScene();
 
-// A session of a technique at its defaults: small picture, small map, light 1x1 m at (0, 4, 0) facing
-// down; progressive, as in the window.
+// A session of a technique at its defaults: small picture, light 1x1 m at (0, 4, 0) facing down; progressive, as in the
+// window.
 Session session(std::shared_ptr<const Scene> scene, std::string_view technique = "hard");
+// With a small map, where many frames are drawn.
+inline constexpr int quickMap = 256;
+Session quickSession(std::shared_ptr<const Scene> scene, std::string_view technique);
 
 struct ShadowImage {
     Renderer::Pixels psi, depth; // row 0 at the top

@@ -14,8 +14,6 @@ using namespace penumbra::test;
 
 namespace {
 
-constexpr double largestMap = 256; // of what is drawn many times
-
 std::shared_ptr<const Scene> emptyFloor(float tilt) { return SceneBuilder().floor(3, tilt).build(); }
 
 // A slab that no ray from the light to the floor can pass.
@@ -25,13 +23,6 @@ std::shared_ptr<const Scene> lidOverFloor() {
 
 std::shared_ptr<const Scene> boxesOverFloor() {
     return SceneBuilder().floor(3).box({-1, 0, -1}, {0, 1, 0}).box({0.2f, 0.8f, 0.2f}, {0.9f, 1.0f, 1.4f}).build();
-}
-
-// At defaults but for a small map, where many frames are drawn.
-Session quickSession(std::shared_ptr<const Scene> scene, std::string_view technique) {
-    Session s = session(std::move(scene), technique);
-    if (Parameter* size = s.techniques.parameters().find("map-size")) size->set(largestMap);
-    return s;
 }
 
 bool hasHistory() { return !renderer().flow().pasts().empty(); } // what was drawn last
@@ -90,7 +81,7 @@ private:
     bool changed_;
 };
 
-bool tooLarge(const Parameter& p, double value) { return p.spec().id == "map-size" && value > largestMap; }
+bool tooLarge(const Parameter& p, double value) { return p.spec().id == "map-size" && value > quickMap; }
 
 } // namespace
 
@@ -137,7 +128,7 @@ TEST_CASE("every parameter at its minimum, default and maximum gives a finite ψ
             const Restored restored(*p);
             for (const double value :
                  {p->spec().min, p->defaultValue(),
-                  std::min(p->spec().max, tooLarge(*p, p->spec().max) ? largestMap : p->spec().max)}) {
+                  std::min(p->spec().max, tooLarge(*p, p->spec().max) ? quickMap : p->spec().max)}) {
                 CAPTURE(p->qualifiedName(), value);
                 p->set(p->nearest(value));
                 checkSane(s);
@@ -153,7 +144,7 @@ TEST_CASE("random settings give a finite ψ in [0, 1]") {
         Session s = quickSession(boxesOverFloor(), card->id);
         for (int round = 0; round < 12; ++round) {
             for (Parameter* p : s.techniques.parameters().all()) {
-                const double max = tooLarge(*p, p->spec().max) ? largestMap : p->spec().max;
+                const double max = tooLarge(*p, p->spec().max) ? quickMap : p->spec().max;
                 p->set(p->nearest(p->spec().min + unit(random) * (max - p->spec().min)));
             }
             s.light.shape = static_cast<LightShape>(round % 3);

@@ -76,7 +76,7 @@ TEST_CASE("every variant of every shader is valid GLSL 4.50 for glslangValidator
     };
     for (const Card* card : catalogue())
         for (const LightShape shape : {LightShape::Rectangle, LightShape::Disk, LightShape::Directional}) {
-            Session s = session(SceneBuilder().floor(2).build(), card->id);
+            Session s = quickSession(SceneBuilder().floor(2).build(), card->id);
             s.display.show = Show::Lit;
             s.light.shape = shape;
             const auto check = [&] { forEachStage(s, validate); };

@@ -32,7 +32,7 @@ using namespace penumbra::test;
 TEST_CASE("the steady state allocates nothing per frame, with a scene that is bent and bulges too") {
     for (const Card* card : catalogue())
         for (const Timing timing : {Timing::Off, Timing::Queries}) {
-            Session s = session(wavingScene(), card->id);
+            Session s = quickSession(wavingScene(), card->id);
             s.display.show = Show::Lit;
             const auto frame = [&] {
                 s.camera.eye.x += 0.01f;

@@ -29,7 +29,11 @@ dot() {
         }'
 }
 
-start two-boxes --technique pcss --size 1280x720 --set light-sampling.samples=2 --set light-sampling.map-size=64
+small=(--set light-sampling.samples=2) # all are measured over and over: small maps do
+for id in $("$penumbra" list --json | sed -n 's/^      "id": "\(.*\)",$/\1/p' | grep -v none); do
+    small+=(--set "$id.map-size=256")
+done
+start two-boxes --technique pcss --size 1280x720 "${small[@]}"
 hand key m
 press $measure_all
 xdotool mousemove $away
