@@ -39,6 +39,7 @@ void Flow::begin(Turn turn) {
     passes_.clear();
     images_.clear();
     pasts_.clear();
+    tileSets_.clear();
     aliases_.clear();
     repeat_ = lastRepeat_ = 0;
 }
@@ -64,7 +65,8 @@ int Flow::intern(Scope scope, std::string_view name) {
 }
 
 Flow::Outputs Flow::pass(Scope scope, const PassSpec& spec) {
-    ensure(!spec.writes.empty() || std::holds_alternative<PoseVertices>(spec.work), "a pass writes nothing");
+    ensure(!spec.writes.empty() || !spec.onto.empty() || std::holds_alternative<PoseVertices>(spec.work),
+           "a pass writes nothing");
     for (const Read& read : spec.reads) {
         if (const Image* image = std::get_if<Image>(&read.image)) {
             ensure(image->index_ >= 0 && image->index_ < static_cast<int>(images_.size()), "a read of no image");
@@ -79,19 +81,25 @@ Flow::Outputs Flow::pass(Scope scope, const PassSpec& spec) {
     if (spec.parameters) packBlock(*spec.parameters, packed_);
 
     const auto sameWrites = [&](const PassNode& pass) {
-        if (pass.writes.size() != spec.writes.size()) return false;
+        const size_t old = spec.onto.size();
+        if (pass.writes.size() != old + spec.writes.size()) return false;
+        for (size_t i = 0; i < old; ++i)
+            if (pass.writes[i] != spec.onto[i]) return false;
         for (size_t i = 0; i < spec.writes.size(); ++i)
-            if (!node(pass.writes[i]).spec.sameStorage(spec.writes[i]) ||
-                node(pass.writes[i]).spec.name != spec.writes[i].name)
+            if (!node(pass.writes[old + i]).spec.sameStorage(spec.writes[i]) ||
+                node(pass.writes[old + i]).spec.name != spec.writes[i].name)
                 return false;
         return true;
     };
+    Work work = spec.work;
+    if (Compute* compute = std::get_if<Compute>(&work); compute && compute->over)
+        compute->defines.push_back({"OVER_TILES"});
     for (const PassNode& pass : passes_) {
         const int round = pass.writes.empty() ? 0 : node(pass.writes[0]).repeat;
         const bool sameParameters = pass.parameters && spec.parameters ? *pass.parameters == *spec.parameters
                                                                        : pass.parameters == spec.parameters;
-        if ((round == 0 || round == repeat_) && pass.work == spec.work && pass.reads == spec.reads &&
-            pass.constants == spec.constants && sameParameters && sameWrites(pass)) {
+        if ((round == 0 || round == repeat_) && pass.work == work && pass.reads == spec.reads &&
+            pass.marks == spec.marks && pass.constants == spec.constants && sameParameters && sameWrites(pass)) {
             Outputs outputs;
             for (const Image image : pass.writes) {
                 const int label = intern(scope, node(image).spec.name);
@@ -102,9 +110,19 @@ Flow::Outputs Flow::pass(Scope scope, const PassSpec& spec) {
         }
     }
 
-    PassNode pass{spec.stage, intern(scope, spec.name), spec.work, spec.reads, {}, spec.constants, spec.parameters, {}};
+    PassNode pass{.stage = spec.stage,
+                  .label = intern(scope, spec.name),
+                  .work = work,
+                  .reads = spec.reads,
+                  .marks = spec.marks,
+                  .constants = spec.constants,
+                  .parameters = spec.parameters};
     for (const uint32_t scalar : packed_) pass.parameterBlock.push_back(scalar);
     Outputs outputs;
+    for (const Image image : spec.onto) {
+        pass.writes.push_back(image);
+        outputs.indices.push_back(image.index_);
+    }
     for (const ImageSpec& image : spec.writes) {
         const int label = intern(scope, image.name);
         for (const ImageNode& other : images_)
@@ -118,6 +136,13 @@ Flow::Outputs Flow::pass(Scope scope, const PassSpec& spec) {
     }
     passes_.push_back(pass);
     return outputs;
+}
+
+TileSet Flow::tiles(Scope scope, std::string_view name, Extent extent) {
+    constexpr int texels = 8;
+    ensure(extent.layers == 1, "tiles of a layered image");
+    tileSets_.push_back({name, intern(scope, name), (extent.width + texels - 1) / texels, extent.height});
+    return TileSet(static_cast<int>(tileSets_.size()) - 1);
 }
 
 PastImage Flow::past(Scope scope, const ImageSpec& spec, uint64_t key) {
@@ -160,6 +185,7 @@ uint64_t Flow::bytes() const {
     uint64_t sum = 0;
     for (const ImageNode& image : images_)
         if (image.repeat <= 2) sum += image.spec.bytes() * (image.kept ? 2 : 1); // rounds take turns with two textures
+    for (const TileNode& tiles : tileSets_) sum += tiles.bytes();
     return sum;
 }
 

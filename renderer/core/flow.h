@@ -13,6 +13,7 @@
 
 #include <cstring>
 #include <memory>
+#include <optional>
 #include <string>
 #include <variant>
 #include <vector>
@@ -62,6 +63,21 @@ enum class Sampling : uint8_t {
     Compare, // depth formats: hardware comparison reference <= stored, bilinear over the four results
 };
 
+// A set of tiles, eight texels of a row each, of images of one extent. Passes of this frame put tiles into it, and
+// later ones run over those alone: software renderers, and groups of threads on a GPU, skip work only as a whole.
+class TileSet {
+public:
+    bool operator==(const TileSet&) const = default;
+    int index() const { return index_; } // of the flow's tileSets()
+
+private:
+    friend class Flow;
+    template <class, size_t> friend class FixedVector;
+    TileSet() = default;
+    explicit TileSet(int index) : index_(index) {}
+    int index_ = -1;
+};
+
 // One input of a pass; `sampler` is the name of the sampler in the shader.
 struct Read {
     std::string_view sampler;
@@ -81,6 +97,7 @@ using Defines = FixedVector<Define, 8>;
 struct Compute {
     std::string_view shader; // file below shaders/
     Defines defines = {};
+    std::optional<TileSet> over = {}; // only the texels of these tiles; the shader sees OVER_TILES
     bool operator==(const Compute&) const = default;
 };
 
@@ -150,6 +167,9 @@ struct PassSpec {
     Work work;
     FixedVector<Read, 12> reads = {};
     FixedVector<ImageSpec, 5> writes = {};
+    FixedVector<Image, 2> onto = {};    // images of earlier passes that it changes, ahead of those it makes; nobody may
+                                        // mean the earlier texels any more
+    FixedVector<TileSet, 2> marks = {}; // tile sets that it puts tiles into; see shaders/tiles.glsl
     Constants constants = {};
     const ParameterSet* parameters = nullptr; // the technique's block (binding 1), if the shader looks at it
 };
@@ -181,7 +201,8 @@ public:
         int label;
         Work work;
         FixedVector<Read, 12> reads;
-        FixedVector<Image, 5> writes{};
+        FixedVector<Image, 5> writes{}; // those of `onto` first
+        FixedVector<TileSet, 2> marks;
         Constants constants;
         const ParameterSet* parameters;
         FixedVector<uint32_t, 64> parameterBlock{};
@@ -193,14 +214,22 @@ public:
         int age;
         bool finished = false;
     };
+    struct TileNode {
+        std::string_view name; // of the block in the shaders that mark, see shaders/tiles.glsl
+        int label;
+        int width, height; // tiles
+
+        // As shaders/tiles.glsl has it, and a group's tiles more, so that none is read past the end.
+        uint64_t bytes() const { return 4 * (8 + 2 * uint64_t(width) * uint64_t(height) + 8); }
+    };
     using Writes = FixedVector<ImageSpec, 5>;
 
     // Starts a new frame: forgets the passes; remembers which images there were, for past().
     void begin(Turn turn = Turn::Next);
 
-    // Appends a pass and returns the images it writes, in the order of spec.writes. A pass equal to an earlier one of
-    // this frame in everything but its label is not run again: the earlier images are returned and the label becomes
-    // another name for them.
+    // Appends a pass and returns the images it writes, in the order of spec.onto and then of spec.writes. A pass equal
+    // to an earlier one of this frame in everything but its label is not run again: the earlier images are returned and
+    // the label becomes another name for them.
     struct Outputs {
         FixedVector<int, 5> indices;
         Image operator[](size_t i) const { return Image(indices[i]); }
@@ -210,6 +239,9 @@ public:
         }
     };
     Outputs pass(Scope scope, const PassSpec& spec);
+
+    // An empty set of the tiles of images of this extent.
+    TileSet tiles(Scope scope, std::string_view name, Extent extent);
 
     // Last frame's image of this label, storage and key, or zeros. Asking for it makes the flow keep it from now on.
     // The key stands for all that the image must have in common with this frame, such as the view.
@@ -238,6 +270,9 @@ public:
     const std::vector<PassNode>& passes() const { return passes_; }
     const std::vector<ImageNode>& images() const { return images_; }
     const std::vector<PastNode>& pasts() const { return pasts_; }
+    const std::vector<TileNode>& tileSets() const { return tileSets_; }
+    TileSet tileSet(size_t index) const { return TileSet(static_cast<int>(index)); }
+    const TileNode& node(TileSet tiles) const { return tileSets_[static_cast<size_t>(tiles.index_)]; }
     // Other names of images that several instances share: (label number, image index).
     const std::vector<std::pair<int, int>>& aliases() const { return aliases_; }
 
@@ -249,7 +284,8 @@ public:
     std::optional<Image> find(std::string_view label) const;
     Image image(int index) const { return Image(index); }
 
-    // Bytes of all textures that this frame holds, rounds of a repeat and kept pasts counted as they are stored.
+    // Bytes of all textures that this frame holds, rounds of a repeat and kept pasts counted as they are stored; and of
+    // its sets of tiles.
     uint64_t bytes() const;
     // Throws InputError that names the largest images and their sizes if the frame would hold more than `limit` bytes.
     void refuseAbove(uint64_t limit) const;
@@ -266,6 +302,7 @@ private:
     std::vector<PassNode> passes_;
     std::vector<ImageNode> images_;
     std::vector<PastNode> pasts_;
+    std::vector<TileNode> tileSets_;
     std::vector<std::pair<int, int>> aliases_;
     std::vector<std::unique_ptr<std::string>> labels_; // interned for the life of the flow
     std::vector<Remembered> lastImages_;               // that this frame can read

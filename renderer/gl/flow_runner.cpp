@@ -33,7 +33,11 @@ struct Groups {
 };
 // What a pass can be divided into: groups of texels or pieces of geometry.
 size_t partsOf(const Flow& flow, const Flow::PassNode& pass) {
-    if (std::holds_alternative<Compute>(pass.work)) return Groups(flow.spec(pass.writes[0]).extent).count();
+    if (const Compute* compute = std::get_if<Compute>(&pass.work)) {
+        if (!compute->over) return Groups(flow.spec(pass.writes[0]).extent).count();
+        const Flow::TileNode& tiles = flow.node(*compute->over);
+        return static_cast<size_t>(tiles.width) * static_cast<size_t>(tiles.height);
+    }
     const Draw* const draw = std::get_if<Draw>(&pass.work);
     return draw && draw->geometry ? draw->geometry->pieces() : 1;
 }
@@ -154,9 +158,93 @@ void FlowRunner::bindWrites(const Flow& flow, const Flow::PassNode& pass, const 
     }
 }
 
+// Words of the buffer that shaders/tiles.glsl describes.
+enum TileWord : GLintptr { GroupsX, GroupsY, GroupsZ, Listed, Width, Height };
+
+constexpr std::string_view listTiles = "tiles/list.glsl", cutTiles = "tiles/cut.glsl";
+
+const Program& FlowRunner::tileProgram(std::string_view shader) {
+    return programs_.get(ProgramKind::Compute, shader, {}, nullptr);
+}
+
+void FlowRunner::empty(const Flow& flow, TileSet set) {
+    const Flow::TileNode& node = flow.node(set);
+    auto tiles = std::find_if(tiles_.begin(), tiles_.end(), [&](const auto& t) { return t->label == node.label; });
+    if (tiles == tiles_.end() || (*tiles)->width != node.width || (*tiles)->height != node.height) {
+        auto made = std::make_unique<Tiles>(
+            Tiles{node.label, node.width, node.height, Buffer(flow.label(node.label), node.bytes(), nullptr), frame_});
+        if (tiles == tiles_.end())
+            tiles = tiles_.insert(tiles, std::move(made));
+        else
+            *tiles = std::move(made);
+    }
+    (*tiles)->lastUsed = frame_;
+    const GLuint buffer = (*tiles)->buffer.name();
+    const GLuint zero = 0;
+    glClearNamedBufferData(buffer, GL_R32UI, GL_RED_INTEGER, GL_UNSIGNED_INT, &zero);
+    const auto put = [&](TileWord word, int value) {
+        const GLuint number = static_cast<GLuint>(value);
+        glClearNamedBufferSubData(buffer, GL_R32UI, word * 4, 4, GL_RED_INTEGER, GL_UNSIGNED_INT, &number);
+    };
+    put(Width, node.width), put(Height, node.height);
+}
+
+const FlowRunner::Tiles& FlowRunner::tilesOf(const Flow& flow, TileSet set) const {
+    const auto tiles =
+        std::find_if(tiles_.begin(), tiles_.end(), [&](const auto& t) { return t->label == flow.node(set).label; });
+    ensure(tiles != tiles_.end(), "a set of tiles was not allocated");
+    return **tiles;
+}
+
+void FlowRunner::bindTiles(const Flow& flow, const Flow::PassNode& pass, const Program& program) {
+    for (const Program::Binding& binding : program.tileSets()) {
+        const Compute& compute = std::get<Compute>(pass.work);
+        std::optional<TileSet> set;
+        if (binding.name == "over") set = compute.over;
+        for (const TileSet marked : pass.marks)
+            if (flow.node(marked).name == binding.name) set = marked;
+        ensure(set.has_value(), "a shader marks tiles of a set that its pass does not name");
+        glBindBufferBase(GL_SHADER_STORAGE_BUFFER, binding.unit, tilesOf(flow, *set).buffer.name());
+    }
+}
+
+// At most so many tiles more of those that were marked. How many there are only the GPU knows: a band past the last is
+// empty.
+void FlowRunner::dispatchOver(const Flow& flow, const Flow::PassNode& pass, TileSet over, size_t tiles) {
+    const size_t all = partsOf(flow, pass);
+    tiles = (tiles + groupSize - 1) / groupSize * groupSize; // of which each fills a row of a group
+    const GLuint buffer = tilesOf(flow, over).buffer.name();
+    const auto use = [&](std::string_view shader) -> const Program& {
+        const Program& program = tileProgram(shader);
+        glUseProgram(program.name());
+        for (const Program::Binding& binding : program.tileSets())
+            glBindBufferBase(GL_SHADER_STORAGE_BUFFER, binding.unit, buffer);
+        return program;
+    };
+    if (at_.parts == 0) {
+        use(listTiles);
+        glDispatchCompute(static_cast<GLuint>((all + 63) / 64), 1, 1);
+        glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT);
+    }
+    glUniform3ui(use(cutTiles).bandOrigin(), static_cast<GLuint>(at_.parts), static_cast<GLuint>(tiles), 0);
+    glDispatchCompute(1, 1, 1);
+    glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT | GL_COMMAND_BARRIER_BIT);
+
+    const Program& program = *chosen_[at_.pass].plain;
+    bindReads(flow, pass, program);
+    bindWrites(flow, pass, program);
+    bindTiles(flow, pass, program);
+    glUseProgram(program.name());
+    glUniform3ui(program.bandOrigin(), static_cast<GLuint>(at_.parts), 0, 0);
+    glBindBuffer(GL_DISPATCH_INDIRECT_BUFFER, buffer);
+    glDispatchComputeIndirect(GroupsX * 4);
+    at_.lastParts = std::min(tiles, all - at_.parts);
+}
+
 // At most so many groups more of a compute pass: all, some rows of a layer or a part of a row.
 void FlowRunner::dispatch(const Flow& flow, const Flow::PassNode& pass, size_t groups) {
     const Program& program = *chosen_[at_.pass].plain;
+    bindTiles(flow, pass, program);
     bindReads(flow, pass, program);
     bindWrites(flow, pass, program);
     const Groups all(flow.spec(pass.writes[0]).extent);
@@ -174,10 +262,7 @@ void FlowRunner::dispatch(const Flow& flow, const Flow::PassNode& pass, size_t g
                      static_cast<GLuint>(layer));
     glDispatchCompute(static_cast<GLuint>(band.width), static_cast<GLuint>(band.height),
                       static_cast<GLuint>(band.layers));
-    glMemoryBarrier(GL_TEXTURE_FETCH_BARRIER_BIT | GL_SHADER_IMAGE_ACCESS_BARRIER_BIT | GL_TEXTURE_UPDATE_BARRIER_BIT |
-                    GL_FRAMEBUFFER_BARRIER_BIT);
     at_.lastParts = band.count();
-    at_.parts += at_.lastParts;
 }
 
 void FlowRunner::supply(const Flow& flow, const Flow::PassNode& pass, const Supply& work) {
@@ -283,6 +368,8 @@ void FlowRunner::begin(const Flow& flow, Timing timing, Turn turn) {
     }
     for (const Flow::ImageNode& node : flow.images()) allocate(flow, node.label, turnOf(node), node.spec, false);
     for (const Flow::PastNode& node : flow.pasts()) allocate(flow, node.label, 1 - turn_, node.spec, node.age == 0);
+    for (size_t i = 0; i < flow.tileSets().size(); ++i) empty(flow, flow.tileSet(i));
+    if (!flow.tileSets().empty()) (void)tileProgram(listTiles), (void)tileProgram(cutTiles);
 
     careful_ = std::max(milliseconds_, timer_.newest().milliseconds) > dearFrame;
     for (const Flow::PassNode& pass : flow.passes())
@@ -348,10 +435,24 @@ void FlowRunner::runPart(const Flow& flow, std::optional<double> millisecondsLef
         at_.parts = at_.lastParts = 1;
     } else {
         const bool divisible = chosen_[at_.pass].plain->bandOrigin() >= 0 && all > 1;
-        dispatch(flow, pass, millisecondsLeft && divisible ? nextBand(all, fewestFirst, *millisecondsLeft) : all);
+        const size_t groups = millisecondsLeft && divisible ? nextBand(all, fewestFirst, *millisecondsLeft) : all;
+        const Compute& compute = std::get<Compute>(pass.work);
+        if (compute.over)
+            dispatchOver(flow, pass, *compute.over, groups);
+        else
+            dispatch(flow, pass, groups);
+        glMemoryBarrier(GL_TEXTURE_FETCH_BARRIER_BIT | GL_SHADER_IMAGE_ACCESS_BARRIER_BIT |
+                        GL_TEXTURE_UPDATE_BARRIER_BIT | GL_FRAMEBUFFER_BARRIER_BIT | GL_SHADER_STORAGE_BARRIER_BIT);
+        at_.parts += at_.lastParts;
     }
     timer_.endPass(pass.stage, pass.label);
     if (millisecondsLeft) fence_ = glFenceSync(GL_SYNC_GPU_COMMANDS_COMPLETE, 0);
+}
+
+// Of tiles, those of one frame may be few and those of the next many: their pace is that of the dearest frame.
+double FlowRunner::paceAfter(const Flow::PassNode& pass) const {
+    const Compute* compute = std::get_if<Compute>(&pass.work);
+    return compute && compute->over ? std::max(at_.pace->milliseconds, at_.dearest) : at_.dearest;
 }
 
 bool FlowRunner::step(const Flow& flow, double milliseconds) {
@@ -362,7 +463,7 @@ bool FlowRunner::step(const Flow& flow, double milliseconds) {
     constexpr double mostlySpent = 0.8; // what is left then is too little for a band
     for (bool begun = false; settled(bands ? milliseconds - spent() : forever); begun = true) {
         if (at_.pass < flow.passes().size() && at_.parts == partsOf(flow, flow.passes()[at_.pass])) {
-            if (at_.pace && bands) at_.pace->milliseconds = at_.dearest;
+            if (at_.pace && bands) at_.pace->milliseconds = paceAfter(flow.passes()[at_.pass]);
             at_ = {.pass = at_.pass + 1};
         }
         underWay_ = at_.pass < flow.passes().size();
@@ -374,6 +475,7 @@ bool FlowRunner::step(const Flow& flow, double milliseconds) {
     timer_.endFrame();
     uniforms_.endFrame();
     std::erase_if(slots_, [&](const std::unique_ptr<Slot>& slot) { return slot->lastUsed != frame_; });
+    std::erase_if(tiles_, [&](const std::unique_ptr<Tiles>& tiles) { return tiles->lastUsed != frame_; });
     std::erase_if(paces_, [&](const Pace& pace) { return pace.lastUsed != frame_; });
     return true;
 }

@@ -60,6 +60,12 @@ private:
         uint64_t lastUsed;
         std::shared_ptr<const std::vector<float>> supplied = {}; // what it holds, if a Supply pass writes it
     };
+    struct Tiles {
+        int label;
+        int width, height;
+        Buffer buffer; // as shaders/tiles.glsl has it
+        uint64_t lastUsed;
+    };
     // What was chosen for a pass when the frame began; parameters may change under way.
     struct Programs {
         const Program *plain, *textured, *masked;
@@ -93,10 +99,16 @@ private:
     const Program& program(const Flow::PassNode& pass, const char* variant = nullptr); // with a define more
     void bindReads(const Flow& flow, const Flow::PassNode& pass, const Program& program);
     void bindWrites(const Flow& flow, const Flow::PassNode& pass, const Program& program);
+    const Program& tileProgram(std::string_view shader);
+    void empty(const Flow& flow, TileSet tiles);
+    const Tiles& tilesOf(const Flow& flow, TileSet tiles) const;
+    void bindTiles(const Flow& flow, const Flow::PassNode& pass, const Program& program);
+    void dispatchOver(const Flow& flow, const Flow::PassNode& pass, TileSet over, size_t tiles);
     void supply(const Flow& flow, const Flow::PassNode& pass, const Supply& work);
     void runDraw(const Flow& flow, const Flow::PassNode& pass, const Draw& draw, size_t pieces);
     void dispatch(const Flow& flow, const Flow::PassNode& pass, size_t groups);
     Pace& paceOf(const Flow& flow, const Flow::PassNode& pass);
+    double paceAfter(const Flow::PassNode& pass) const;
     size_t nextBand(size_t all, size_t fewest, double millisecondsLeft) const;
     void runPart(const Flow& flow, std::optional<double> millisecondsLeft);
     bool settled(double milliseconds);
@@ -104,6 +116,7 @@ private:
     ProgramLibrary& programs_;
     Samplers samplers_;
     std::vector<std::unique_ptr<Slot>> slots_;
+    std::vector<std::unique_ptr<Tiles>> tiles_;
     UniformRing uniforms_;
     Handle<destroyFramebuffer> framebuffer_;
     PassTimer timer_;

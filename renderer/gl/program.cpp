@@ -192,6 +192,18 @@ void ProgramLibrary::build(Entry& entry) const {
         glProgramUniform1i(name, uniform.location, static_cast<GLint>(unit));
         bindings.push_back({uniform.name, unit});
     }
+    GLint blocks = 0;
+    glGetProgramInterfaceiv(name, GL_SHADER_STORAGE_BLOCK, GL_ACTIVE_RESOURCES, &blocks);
+    for (GLuint i = 0; i < static_cast<GLuint>(blocks); ++i) {
+        char title[128] = {};
+        glGetProgramResourceName(name, GL_SHADER_STORAGE_BLOCK, i, sizeof(title), nullptr, title);
+        std::string_view block = title;
+        if (!block.ends_with(tileBlockEnding)) continue; // a buffer that the geometry binds
+        block.remove_suffix(tileBlockEnding.size());
+        const GLuint unit = static_cast<GLuint>(program.tileSets_.size());
+        glShaderStorageBlockBinding(name, i, unit);
+        program.tileSets_.push_back({std::string(block), unit});
+    }
     program.source_ = std::move(text.body);
     entry.program = std::move(program);
 }

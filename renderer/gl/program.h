@@ -21,6 +21,8 @@ inline constexpr std::string_view materialSampler = "baseColourTexture";
 
 // The uniform of shaders/band.glsl.
 inline constexpr std::string_view bandOriginUniform = "bandOrigin";
+// What follows the name of a tile set in its block's; see shaders/tiles.glsl.
+inline constexpr std::string_view tileBlockEnding = "Tiles";
 
 // A linked program and where its samplers and images are bound: units 0, 1, 2 ... by name, the material's texture last,
 // so that the variants of a pass agree.
@@ -33,6 +35,7 @@ public:
     GLuint name() const { return handle_.get(); }
     const std::vector<Binding>& samplers() const { return samplers_; }
     const std::vector<Binding>& images() const { return images_; }
+    const std::vector<Binding>& tileSets() const { return tileSets_; } // by the name of the set
     // Of the uniform that says where a band of a compute pass begins, see shaders/band.glsl; −1: it has none.
     GLint bandOrigin() const { return bandOrigin_; }
     // Whether the source text says this word: a read that no variant of the shader could use is a mistake.
@@ -42,7 +45,7 @@ private:
     friend class ProgramLibrary;
     static void destroy(GLuint name) { glDeleteProgram(name); }
     Handle<destroy> handle_;
-    std::vector<Binding> samplers_, images_;
+    std::vector<Binding> samplers_, images_, tileSets_;
     GLint bandOrigin_ = -1;
     std::string source_;
 };

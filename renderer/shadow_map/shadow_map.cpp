@@ -381,7 +381,8 @@ Flow::Outputs resolve(Flow& flow, Scope scope, const Inputs& inputs, const Resol
                       const ParameterSet& parameters) {
     Compute work{resolver.shader,
                  {{"DIRECTIONAL", inputs.light.shape == LightShape::Directional ? 1 : 0},
-                  {"ROUND", inputs.light.shape == LightShape::Rectangle ? 0 : 1}}};
+                  {"ROUND", inputs.light.shape == LightShape::Rectangle ? 0 : 1}},
+                 resolver.over};
     for (const Define& define : resolver.defines) work.defines.push_back(define);
     if (resolver.table > 0) work.defines.push_back({"TABLE", resolver.table});
     const glm::ivec2 size = resolver.withMargin ? inputs.view.size : inputs.pictureSize();
@@ -389,10 +390,13 @@ Flow::Outputs resolve(Flow& flow, Scope scope, const Inputs& inputs, const Resol
                   .name = resolver.pass,
                   .work = work,
                   .reads = {{"depth", inputs.geometryBuffer.depth}, {"normal", inputs.geometryBuffer.normal}},
-                  .writes = {{resolver.writes, resolver.format, {size.x, size.y}, resolver.channels}},
+                  .onto = resolver.onto,
+                  .marks = resolver.marks,
                   .constants = resolver.constants,
                   .parameters = &parameters};
     for (const Read& read : reads) pass.reads.push_back(read);
+    if (resolver.onto.empty())
+        pass.writes.push_back({resolver.writes, resolver.format, {size.x, size.y}, resolver.channels});
     for (const ImageSpec& image : resolver.also) pass.writes.push_back(image);
     return flow.pass(scope, pass);
 }

@@ -185,7 +185,10 @@ struct Resolver {
     Defines defines = {};
     Format format = Format::R32F;
     bool withMargin = false;             // as large as the geometry buffer, not as the picture
-    FixedVector<ImageSpec, 2> also = {}; // further images of that size
+    FixedVector<ImageSpec, 3> also = {}; // further images
+    FixedVector<Image, 2> onto = {};     // instead of what it writes: images that it changes
+    FixedVector<TileSet, 2> marks = {};
+    std::optional<TileSet> over = {};
 };
 using PassReads = decltype(PassSpec::reads);
 // Appends its pass: reads depth, normal and `reads`.

@@ -401,7 +401,13 @@ struct HistoryConstants {
     ResolveConstants resolve;
     vec4 lastX, lastY, lastForward; // from a place relative to the eye [m] to last frame's: d (x, y) [pixels], d [m]
     vec4 lastRayCorner, lastRayDx, lastRayDy; // of last frame's view
-    vec4 keep; // x = most samples that a history keeps in this frame, y = most that one may have
+    vec4 keep;    // x = most samples that a history keeps in this frame, y = most that one may have
+    vec4 picture; // xy of its first pixel in the buffer
+};
+
+struct StartConstants {
+    ResolveConstants resolve;
+    vec4 picture; // as in HistoryConstants
 };
 
 struct FilterConstants {
@@ -485,11 +491,30 @@ public:
         if (past.age() >= most + int32_t(parameters_.startWeight) && !moves(inputs)) flow.finish(past);
 
         const ShadowMap map = drawShadowMap(flow, scope, inputs, describeMap(inputs, past.age()));
-        const Flow::Outputs images = addSample(flow, scope, inputs, map, past, buffer, most);
-        return show(flow, scope, inputs, map.view, images);
+        const glm::ivec2 size = inputs.pictureSize();
+        Frame frame{.map = map,
+                    .past = past,
+                    .buffer = buffer,
+                    .shadow = {"shadow", Format::R32F, {size.x, size.y}, shadowChannels()}};
+        if (parameters_.start != Start::Hard && !stands(inputs, past))
+            frame.starting = flow.tiles(scope, "starting", buffer.extent);
+        if (filters(parameters_)) frame.asking = flow.tiles(scope, "asking", frame.shadow.extent);
+
+        const Flow::Outputs images = addSample(flow, scope, inputs, frame, most);
+        if (frame.starting) start(flow, scope, inputs, frame, images);
+        if (frame.asking || inputs.inspection.images) filter(flow, scope, inputs, frame, images);
+        return images[1];
     }
 
 private:
+    struct Frame {
+        const ShadowMap& map;
+        const PastImage& past;
+        ImageSpec buffer, shadow;
+        std::optional<TileSet> starting = {}; // of the buffer: surfaces without a history
+        std::optional<TileSet> asking = {};   // of the picture: they ask their neighbours
+    };
+
     static bool moves(const Inputs& inputs) { return inputs.geometryBuffer.motion.has_value(); }
     // Every pixel finds its own texel, and no surface is new.
     bool stands(const Inputs& inputs, const PastImage& past) const {
@@ -550,20 +575,24 @@ private:
                 vec4(last.rayCorner, 0),
                 vec4(last.rayDx, 0),
                 vec4(last.rayDy, 0),
-                vec4(kept, most, 0, 0)};
+                vec4(kept, most, 0, 0),
+                vec4(inputs.margin, 0, 0)};
     }
 
-    // The buffer and, where somebody looks, the test.
-    Flow::Outputs addSample(Flow& flow, Scope scope, const Inputs& inputs, const ShadowMap& map, const PastImage& past,
-                            const ImageSpec& buffer, int32_t most) const {
+    // The buffer, what its samples say the shadow is and, where somebody looks, the test.
+    Flow::Outputs addSample(Flow& flow, Scope scope, const Inputs& inputs, const Frame& frame, int32_t most) const {
+        const auto& [map, past, buffer, shadow, starting, asking] = frame;
         const float kept = lightChanged(inputs) ? float(parameters_.lightMemory) : float(mostFloats);
         Resolver resolver{.shader = "techniques/temporal.glsl",
                           .constants = historyConstants(inputs, map.view, kept, most),
                           .writes = buffer.name,
                           .channels = buffer.channels,
                           .format = buffer.format,
-                          .withMargin = true};
+                          .withMargin = true,
+                          .also = {shadow}};
         if (stands(inputs, past)) resolver.defines.push_back({"STILL"});
+        if (starting) resolver.defines.push_back({"STARTED"}), resolver.marks.push_back(*starting);
+        if (asking) resolver.defines.push_back({"FILTERED"}), resolver.marks.push_back(*asking);
         if (inputs.inspection.images) {
             resolver.defines.push_back({"INSPECTED"});
             resolver.also.push_back({"test", Format::RGBA16F, buffer.extent, testChannels});
@@ -576,11 +605,24 @@ private:
                        parameters_);
     }
 
-    Image show(Flow& flow, Scope scope, const Inputs& inputs, const LightViewBlock& light,
-               const Flow::Outputs& images) const {
+    // Estimates what surfaces without a history begin with.
+    void start(Flow& flow, Scope scope, const Inputs& inputs, const Frame& frame, const Flow::Outputs& images) const {
+        Resolver resolver{.shader = "techniques/temporal_start.glsl",
+                          .constants =
+                              StartConstants{resolveConstants(inputs, frame.map.view, true), vec4(inputs.margin, 0, 0)},
+                          .pass = "start",
+                          .withMargin = true,
+                          .onto = {images[0], images[1]},
+                          .over = frame.starting};
+        if (frame.buffer.format == Format::RGBA16F) resolver.defines.push_back({"HALFS"});
+        if (frame.asking) resolver.defines.push_back({"FILTERED"}), resolver.marks.push_back(*frame.asking);
+        resolve(flow, scope, inputs, resolver, {{"shadowMap", frame.map.depth}}, parameters_);
+    }
+
+    void filter(Flow& flow, Scope scope, const Inputs& inputs, const Frame& frame, const Flow::Outputs& images) const {
         const View& view = inputs.view;
         FilterConstants constants{
-            resolveConstants(inputs, light),
+            resolveConstants(inputs, frame.map.view),
             vec4(glm::normalize(glm::cross(view.rayDy, view.rayDx)), 1 / glm::dot(view.rayDx, view.rayDx)),
             vec4(0),
             {}};
@@ -593,13 +635,15 @@ private:
                 ++i;
             }
         }
-        Resolver resolver{.shader = "techniques/temporal_filter.glsl", .table = mostTaps / 2, .pass = "filter"};
+        Resolver resolver{
+            .shader = "techniques/temporal_filter.glsl", .table = mostTaps / 2, .pass = "filter", .onto = {images[1]}};
         PassReads reads{{"shadowBuffer", images[0]}};
-        if (inputs.inspection.images) {
-            const glm::ivec2 size = inputs.pictureSize();
+        if (inputs.inspection.images) { // of every pixel
             resolver.defines.push_back({"INSPECTED"});
-            resolver.also.push_back({"state", Format::RGBA16F, {size.x, size.y}, stateChannels});
-            reads.push_back({"test", images[1]});
+            resolver.also.push_back({"state", Format::RGBA16F, frame.shadow.extent, stateChannels});
+            reads.push_back({"test", images[2]});
+        } else {
+            resolver.over = frame.asking;
         }
         if (inputs.inspection.images && inputs.inspection.probe) {
             constants.probed = vec4(*inputs.inspection.probe, 0, 0);
@@ -607,7 +651,7 @@ private:
             resolver.also.push_back({"neighbours", Format::RGBA32F, {mostTaps, 1}, neighbourChannels});
         }
         resolver.constants = constants;
-        return resolve(flow, scope, inputs, resolver, reads, parameters_)[0];
+        resolve(flow, scope, inputs, resolver, reads, parameters_);
     }
 
     // Of all that makes a history worthless. The light may move and things may, within the rules for them.

@@ -1,20 +1,26 @@
 // SPDX-License-Identifier: MIT
 // One more hard shadow test of every surface, added to its history; see renderer/techniques/temporal.cpp.
 //
-// Texture reads: depth, normal, map, and 1 (nearest) or 4 (bilinear) of the history; where there is none N_b + N_f more of
-// the map.
+// Texture reads: depth, normal, map, and 1 (nearest) or 4 (bilinear) of the history.
 #define OWN_CONSTANTS                                                                                                      \
     vec4 lastX, lastY, lastForward; /* from a place relative to the eye [m] to last frame's: d (x, y) [pixels], d [m] */   \
     vec4 lastRayCorner, lastRayDx, lastRayDy; /* of last frame's view */                                                   \
-    vec4 keep; // x = most samples that a history keeps in this frame, y = most that one may have
-#include "percentage_closer.glsl"
-#include "lib/temporal.glsl"
+    vec4 keep; /* x = most samples that a history keeps in this frame, y = most that one may have */                       \
+    vec4 picture; // xy of its first pixel in the buffer
+#include "shadow_lookup.glsl"
+#include "techniques/temporal_mixing.glsl"
 
 uniform sampler2D history; // shadowBuffer of the last frame
 #ifdef MOTION
 uniform sampler2D motion;
 #endif
 uniform writeonly image2D shadowBuffer; // ρ, n, eye depth [m] (negative: a moving caster's shadow), mean blocker depth [m]
+#ifdef STARTED
+TILE_SET(startingTiles, starting)
+#endif
+#ifdef FILTERED
+TILE_SET(askingTiles, asking)
+#endif
 #ifdef INSPECTED
 uniform writeonly image2D test; // τ, what became of the history, xy the point of the light in half sizes
 #endif
@@ -137,7 +143,7 @@ void main()
 
     bool fresh = h.n <= 0.0;
     h = fresh ? History(tau, 1.0) : withSample(h, tau, keep.y);
-#if START == START_PCSS && !defined(STILL)
+#if START == START_PCSS && defined(STARTED)
     // A point of light needs no estimate.
     float weight = fresh && lightView.light.x + lightView.light.y > 0.0 ? float(startWeight) : 1.0;
     h = History(weight * h.rho, weight == 1.0 ? h.n : weight);
@@ -149,26 +155,23 @@ void main()
     blocker = !blocked ? blocker : refined == 0.0 ? 1e-6 : refined;
     float depthTag = tagged ? -r.eyeDepth : r.eyeDepth;
     bool surface = r.eyeDepth > 0.0;
-    imageStore(shadowBuffer, r.pixel, surface ? vec4(h.rho, h.n, depthTag, blocker) : vec4(0.0));
+#ifdef STARTED
+    bool starts = fresh && r.known < 0.0;
+#else
+    bool starts = false;
+#endif
+    vec4 kept = vec4(h.rho, starts ? -h.n : h.n, depthTag, blocker);
+    imageStore(shadowBuffer, r.pixel, surface ? kept : vec4(0.0));
+    ivec2 pixel = r.pixel - ivec2(picture.xy);
+    imageStore(shadow, pixel, vec4(surface ? clamp(estimated(h), 0.0, 1.0) : 0.0));
+#ifdef STARTED
+    if (starts) MARK(starting, r.pixel)
+#endif
+#ifdef FILTERED
+    if (surface && !starts && asksNeighbours(h, blocker)) MARK(asking, pixel)
+#endif
 #ifdef INSPECTED
     vec2 point = s / max(lightView.light.xy, vec2(1e-9));
     imageStore(test, r.pixel, vec4(tau, eventOf(past, surface, fresh, moving, tagged), point));
-#endif
-
-#if START != START_HARD && !defined(STILL)
-    // A surface that has no history starts with an estimate.
-    if (fresh && r.known < 0.0) {
-        vec2 shift = rotate != 0 ? pixelShift(vec2(r.pixel)) : vec2(0.0);
-        vec2 halfLight = lightView.light.xy;
-        Lookup nearer = makeLookup(r, depthBias, slopeBias, receiverPlane != 0, true);
-        float d_b = meanBlocker(r, nearer, halfLight, s, shift, searchTaps, 1.0 / float(searchTaps), true);
-        bool found = d_b > noBlocker;
-#if START == START_PCSS
-        int filtered = found ? filterTaps : 0;
-        float psi = filteredShadow(r, nearer, halfLight, s, d_b, shift, filtered, 1.0 / float(filterTaps));
-        h.rho = halfLight.x + halfLight.y > 0.0 ? h.n * psi : h.rho;
-#endif
-        imageStore(shadowBuffer, r.pixel, vec4(h.rho, h.n, depthTag, found ? d_b : blocker));
-    }
 #endif
 }

@@ -2,12 +2,12 @@
 // What is shown of the shadow buffer: ψ̂ where its error is small, else a mean over the neighbours that lie on the same
 // surface, as wide as the penumbra. Stores nothing that a later frame reads. See renderer/techniques/temporal.cpp.
 //
-// Texture reads: 1 of the buffer and the normal; where it filters, one a tap more.
+// Runs over the tiles in which a pixel asks its neighbours. Texture reads: 1 of the buffer and the normal, and one a tap.
 #define OWN_CONSTANTS                                                                                                      \
     vec4 forward_scale; /* xyz the view axis, w = pixels² per m² at eye depth 1 */                                         \
     vec4 probed;        // xy the pixel that is looked at closely
 #include "resolve.glsl"
-#include "lib/temporal.glsl"
+#include "techniques/temporal_mixing.glsl"
 #include "lib/sampling.glsl"
 
 uniform sampler2D shadowBuffer;
@@ -40,23 +40,12 @@ void main()
     History h = History(here.x, here.y);
     float eyeDepth = abs(here.z);
 
-#if ERROR == ERROR_CAUTIOUS
-    float error = cautiousError(h);
-#else
-    float error = standardError(h);
-#endif
-#if MIXING == MIXING_THRESHOLD
-    float sampled = sampledShare(error, threshold, threshold);
-#else
-    float sampled = sampledShare(error, sMin, max(sMin, sMax));
-#endif
-    sampled = h.n < float(fewSamples) ? 0.0 : sampled;
-
+    float sampled = sampledOf(h);
     History sum = h;
 #ifdef PROBED
     int asks = 0; // neighbours
 #endif
-    if (NEIGHBOURHOOD != NEIGHBOURHOOD_OFF && eyeDepth > 0.0 && sampled < 1.0 && here.w != 0.0) {
+    if (NEIGHBOURHOOD != NEIGHBOURHOOD_OFF && eyeDepth > 0.0 && asksNeighbours(h, here.w)) {
         vec3 n = unitFromOctahedral(texelFetch(normal, texel, 0).xy);
         vec2 centre = vec2(texel) + 0.5;
         vec3 ray = view.rayCorner.xyz + centre.x * view.rayDx.xyz + centre.y * view.rayDy.xyz;

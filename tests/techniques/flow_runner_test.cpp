@@ -113,6 +113,39 @@ TEST_CASE("a repeat adds up over its rounds") {
     CHECK(driverMessages().empty());
 }
 
+TEST_CASE("a pass over tiles runs where they were marked, and nowhere else") {
+    (void)renderer();
+    Sums sums{.programs = ProgramLibrary(std::filesystem::path(PENUMBRA_SOURCE_FOLDER) / "shaders")};
+    constexpr const char *marking = "../tests/techniques/shaders/mark.glsl",
+                         *filling = "../tests/techniques/shaders/accumulate.glsl",
+                         *running = "../tests/techniques/shaders/over.glsl";
+    sums.inSteps = GENERATE(false, true);
+    constexpr int width = 43, height = 21; // no multiples of a tile
+    for (const bool marks : {true, false, true}) {
+        sums.flow.begin();
+        const TileSet some = sums.flow.tiles(a, "some", {width, height});
+        const ImageSpec sum{"sum", Format::R32F, {width, height}};
+        Image image =
+            marks ? sums.flow.pass(a, {.name = "mark", .work = Compute{marking}, .writes = {sum}, .marks = {some}})
+                  : sums.flow.pass(
+                        a, {.name = "fill", .work = Compute{filling}, .writes = {sum}, .constants = Added{{0}}});
+        const Image after = sums.flow.pass(
+            a, {.name = "over", .work = Compute{running, {}, some}, .onto = {image}, .constants = Added{{4}}});
+        CHECK(after == image);
+        sums.run();
+        const std::vector<float> values = sums.runner.texture(sums.flow, image).read();
+        const auto inTile = [&](int x, int y) { return (y == 2 && x / 8 == 1) || (y == 20 && x / 8 == 5); };
+        size_t wrong = 0;
+        for (int y = 0; y < height; ++y)
+            for (int x = 0; x < width; ++x)
+                wrong += values[static_cast<size_t>(y * width + x)] !=
+                         (marks ? 1.0f : 0.0f) + (marks && inTile(x, y) ? 4 : 0);
+        CHECK(wrong == 0);
+    }
+    CHECK(sums.flow.bytes() == 4 * width * height + 4 * (8 + 2 * 6 * 21 + 8));
+    CHECK(driverMessages().empty());
+}
+
 TEST_CASE("a shared image is one texture under both names") {
     (void)renderer();
     Sums sums;
