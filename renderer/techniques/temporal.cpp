@@ -29,7 +29,7 @@ enum class Start { Pcss, Search, Hard };
 enum class Storage { Half, Float };
 enum class Lookup { Nearest, Bilinear };
 enum class DepthTest { Absolute, Relative };
-enum class Moving { Ignore, Disocclusion, Decrement };
+enum class Moving { Ignore, Disocclusion, Decrement, Region };
 enum class Neighbourhood { Off, Box, Poisson };
 enum class Footprint { Screen, Surface };
 enum class Mixing { Threshold, Blend };
@@ -39,7 +39,7 @@ constexpr std::string_view startNames[] = {"pcss", "search", "hard"};
 constexpr std::string_view storageNames[] = {"16f", "32f"};
 constexpr std::string_view lookupNames[] = {"nearest", "bilinear"};
 constexpr std::string_view depthTestNames[] = {"absolute", "relative"};
-constexpr std::string_view movingNames[] = {"ignore", "disocclusion", "decrement"};
+constexpr std::string_view movingNames[] = {"ignore", "disocclusion", "decrement", "region"};
 constexpr std::string_view neighbourhoodNames[] = {"off", "box", "poisson"};
 constexpr std::string_view footprintNames[] = {"screen", "surface"};
 constexpr std::string_view mixingNames[] = {"threshold", "blend"};
@@ -343,12 +343,23 @@ struct Parameters : ParameterSet {
     Choice<Moving> moving{*this,
                           {.id = "moving",
                            .label = "Moving casters",
-                           .value = double(Moving::Disocclusion),
+                           .value = double(Moving::Region),
                            .programConstant = true,
-                           .source = "disocclusion: Scherzer 2009, 3.4; decrement: thesis 5.2.5",
+                           .source = "disocclusion: Scherzer 2009, 3.4; decrement: thesis 5.2.5; region: ours",
                            .help = "What becomes of a history under the shadow of something that moves. Disocclusion "
-                                   "starts anew; decrement also takes samples away after the shadow has left.",
+                                   "starts anew; decrement also takes samples away after the shadow has left. Region "
+                                   "looks for things that move before the whole light, and starts anew until the "
+                                   "shadow has left; it is searched only in frames in which something moves.",
                            .choices = movingNames}};
+    Flag centralMap{*this,
+                    {.id = "central-map",
+                     .label = "Central map too",
+                     .value = 1,
+                     .source = "Scherzer 2009, 5 (future work)",
+                     .help = "While something moves, a second map a frame, from the light's centre: estimates do not "
+                             "jump with the point of the light.",
+                     .active = [](const ParameterSet& set) { return !is(set, "start", Start::Hard); },
+                     .inactiveReason = "a hard start estimates nothing"}};
     static bool decrements(const ParameterSet& set) { return is(set, "moving", Moving::Decrement); }
     Integer decrement{*this,
                       {.id = "decrement",
@@ -380,8 +391,8 @@ struct Parameters : ParameterSet {
                          .max = 256,
                          .unit = Unit::Samples,
                          .source = "Scherzer 2009, 5 and thesis 5.4.1 (future work)",
-                         .help = "Samples that are left of a history when the light moves or changes its size. Few "
-                                 "follow at once, many trail behind; 0 starts anew."}};
+                         .help = "Samples that are left of a history when the light moves or changes its size, or the "
+                                 "surface itself moves. Few follow at once, many trail behind; 0 starts anew."}};
     Real overscan{*this,
                   {.id = "overscan",
                    .value = 5,
@@ -451,6 +462,7 @@ constexpr Channel stateChannels[] = {
     {"filtered", "1 − w", "share of the neighbours' mean in what is shown", Unit::None, 0, 1},
     {"error", "ŝ_n", "standard error of the samples (eq. 3); 1 with fewer than two", Unit::None, 0, 0.5f},
     {"estimate", "ψ̂_n", "mean of the samples, before neighbours are asked", Unit::None, 0, 1}};
+constexpr Channel moverChannels[] = {{"moving", "", "1: something that moves takes light", Unit::None, 0, 1}};
 constexpr Channel neighbourChannels[] = {
     {"x", "", "of a neighbour that the filter asks, from the probed pixel to the right", Unit::Pixels},
     {"y", "", "upwards", Unit::Pixels},
@@ -492,7 +504,14 @@ public:
 
         const ShadowMap map = drawShadowMap(flow, scope, inputs, describeMap(inputs, past.age()));
         const glm::ivec2 size = inputs.pictureSize();
+        std::optional<ShadowMap> central;
+        if (drawsCentre(inputs)) {
+            ShadowMapDescription description = parameters_.map.describe();
+            signMovers(description);
+            central = drawShadowMap(flow, {scope.instance, "temporal-centre"}, inputs, description);
+        }
         Frame frame{.map = map,
+                    .estimated = central ? *central : map,
                     .past = past,
                     .buffer = buffer,
                     .shadow = {"shadow", Format::R32F, {size.x, size.y}, shadowChannels()}};
@@ -508,7 +527,8 @@ public:
 
 private:
     struct Frame {
-        const ShadowMap& map;
+        const ShadowMap& map;       // from this frame's point of the light
+        const ShadowMap& estimated; // what estimates look at
         const PastImage& past;
         ImageSpec buffer, shadow;
         std::optional<TileSet> starting = {}; // of the buffer: surfaces without a history
@@ -545,9 +565,17 @@ private:
             parameters_.map.describe(central ? lightCentre : lightPoint(inputs.light, samplePoint(inputs.seed, point)));
         if (!central && halfSize(inputs.light) != vec2(0))
             description.shift = parameters_.sequence == Sequence::R2 ? haltonPoint(i + 1) - 0.5f : gridShift(i);
-        description.signMovers = moves(inputs) && parameters_.moving != Moving::Ignore;
-        if (description.signMovers) description.format = Format::R32F;
+        if (moves(inputs)) signMovers(description);
         return description;
+    }
+
+    void signMovers(ShadowMapDescription& description) const {
+        description.signMovers = parameters_.moving != Moving::Ignore;
+        if (description.signMovers) description.format = Format::R32F;
+    }
+    bool drawsCentre(const Inputs& inputs) const {
+        return moves(inputs) && parameters_.centralMap && parameters_.start != Start::Hard &&
+               halfSize(inputs.light) != vec2(0);
     }
 
     // Another seed shifts them all.
@@ -561,7 +589,7 @@ private:
     }
 
     static HistoryConstants historyConstants(const Inputs& inputs, const LightViewBlock& light, float kept,
-                                             int32_t most) {
+                                             int32_t most, int memory) {
         const View last = inputs.last ? grown(inputs.last->view, inputs.margin) : inputs.view;
         const glm::dmat3 rays(last.rayDx, last.rayDy, last.rayCorner); // d (x, y, 1) to a place relative to the eye
         const glm::dmat3 fromPlace = glm::inverse(rays);
@@ -575,16 +603,16 @@ private:
                 vec4(last.rayCorner, 0),
                 vec4(last.rayDx, 0),
                 vec4(last.rayDy, 0),
-                vec4(kept, most, 0, 0),
+                vec4(kept, most, float(memory), 0),
                 vec4(inputs.margin, 0, 0)};
     }
 
     // The buffer, what its samples say the shadow is and, where somebody looks, the test.
     Flow::Outputs addSample(Flow& flow, Scope scope, const Inputs& inputs, const Frame& frame, int32_t most) const {
-        const auto& [map, past, buffer, shadow, starting, asking] = frame;
+        const auto& [map, estimated, past, buffer, shadow, starting, asking] = frame;
         const float kept = lightChanged(inputs) ? float(parameters_.lightMemory) : float(mostFloats);
         Resolver resolver{.shader = "techniques/temporal.glsl",
-                          .constants = historyConstants(inputs, map.view, kept, most),
+                          .constants = historyConstants(inputs, map.view, kept, most, parameters_.lightMemory),
                           .writes = buffer.name,
                           .channels = buffer.channels,
                           .format = buffer.format,
@@ -597,26 +625,43 @@ private:
             resolver.defines.push_back({"INSPECTED"});
             resolver.also.push_back({"test", Format::RGBA16F, buffer.extent, testChannels});
         }
-        if (!moves(inputs))
-            return resolve(flow, scope, inputs, resolver, {{"shadowMap", map.depth}, {"history", past}}, parameters_);
-        resolver.defines.push_back({"MOTION"});
-        return resolve(flow, scope, inputs, resolver,
-                       {{"shadowMap", map.depth}, {"history", past}, {"motion", *inputs.geometryBuffer.motion}},
-                       parameters_);
+        PassReads reads{{"shadowMap", map.depth}, {"history", past}};
+        if (moves(inputs)) {
+            resolver.defines.push_back({"MOTION"});
+            reads.push_back({"motion", *inputs.geometryBuffer.motion});
+            if (parameters_.moving == Moving::Region) {
+                resolver.defines.push_back({"MOVERS"});
+                reads.push_back({"movers", findMovers(flow, scope, inputs, frame)});
+            }
+        }
+        return resolve(flow, scope, inputs, resolver, reads, parameters_);
     }
 
     // Estimates what surfaces without a history begin with.
     void start(Flow& flow, Scope scope, const Inputs& inputs, const Frame& frame, const Flow::Outputs& images) const {
         Resolver resolver{.shader = "techniques/temporal_start.glsl",
-                          .constants =
-                              StartConstants{resolveConstants(inputs, frame.map.view, true), vec4(inputs.margin, 0, 0)},
+                          .constants = StartConstants{resolveConstants(inputs, frame.estimated.view, true),
+                                                      vec4(inputs.margin, 0, 0)},
                           .pass = "start",
                           .withMargin = true,
                           .onto = {images[0], images[1]},
                           .over = frame.starting};
         if (frame.buffer.format == Format::RGBA16F) resolver.defines.push_back({"HALFS"});
         if (frame.asking) resolver.defines.push_back({"FILTERED"}), resolver.marks.push_back(*frame.asking);
-        resolve(flow, scope, inputs, resolver, {{"shadowMap", frame.map.depth}}, parameters_);
+        resolve(flow, scope, inputs, resolver, {{"shadowMap", frame.estimated.depth}}, parameters_);
+    }
+
+    // Where something that moves takes light.
+    Image findMovers(Flow& flow, Scope scope, const Inputs& inputs, const Frame& frame) const {
+        return resolve(flow, scope, inputs,
+                       {.shader = "techniques/temporal_movers.glsl",
+                        .constants = resolveConstants(inputs, frame.estimated.view, true),
+                        .pass = "movers",
+                        .writes = "movers",
+                        .channels = moverChannels,
+                        .format = Format::R16F,
+                        .withMargin = true},
+                       {{"shadowMap", frame.estimated.depth}}, parameters_);
     }
 
     void filter(Flow& flow, Scope scope, const Inputs& inputs, const Frame& frame, const Flow::Outputs& images) const {

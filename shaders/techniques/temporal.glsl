@@ -5,7 +5,7 @@
 #define OWN_CONSTANTS                                                                                                      \
     vec4 lastX, lastY, lastForward; /* from a place relative to the eye [m] to last frame's: d (x, y) [pixels], d [m] */   \
     vec4 lastRayCorner, lastRayDx, lastRayDy; /* of last frame's view */                                                   \
-    vec4 keep; /* x = most samples that a history keeps in this frame, y = most that one may have */                       \
+    vec4 keep; /* most samples that a history keeps: x in this frame, z if its surface moves; y = that it may have */      \
     vec4 picture; // xy of its first pixel in the buffer
 #include "shadow_lookup.glsl"
 #include "techniques/temporal_mixing.glsl"
@@ -13,6 +13,9 @@
 uniform sampler2D history; // shadowBuffer of the last frame
 #ifdef MOTION
 uniform sampler2D motion;
+#endif
+#ifdef MOVERS
+uniform sampler2D movers; // 1: something that moves takes light
 #endif
 uniform writeonly image2D shadowBuffer; // ρ, n, eye depth [m] (negative: a moving caster's shadow), mean blocker depth [m]
 #ifdef STARTED
@@ -34,6 +37,7 @@ struct Found {
     bool tagged;   // the shadow of something that moved
     float share, blockerShare; // of the texels
     vec2 place;                // of the surface in the last frame [pixels]
+    bool moves;                // by itself
 };
 
 // Fetches outside the buffer are 0, which is no history. What does not count is left out by choice: nothing times NaN is
@@ -54,7 +58,7 @@ void addTexel(inout Found found, ivec2 place, float weight, float d, float tilt)
 
 Found lookUp(Receiver r)
 {
-    Found found = Found(History(0.0, 0.0), 0.0, false, 0.0, 0.0, vec2(r.pixel) + 0.5);
+    Found found = Found(History(0.0, 0.0), 0.0, false, 0.0, 0.0, vec2(r.pixel) + 0.5, false);
 #ifdef STILL
     // Nothing has moved: the texel is the pixel's own, and shows the same surface.
     vec4 texel = texelFetch(history, r.pixel, 0);
@@ -72,9 +76,9 @@ Found lookUp(Receiver r)
     // The motion image is in half floats: only things that really moved are taken from it.
     vec3 moved = texelFetch(motion, r.pixel, 0).xyz;
     vec2 there = vec2(r.pixel) + 0.5 + moved.xy;
-    bool moves = distance(there, place) > 0.02 + 0.002 * length(moved.xy);
-    place = moves ? there : place;
-    d = moves ? r.eyeDepth + moved.z : d;
+    found.moves = distance(there, place) > 0.02 + 0.002 * length(moved.xy);
+    place = found.moves ? there : place;
+    d = found.moves ? r.eyeDepth + moved.z : d;
 #endif
     found.place = place;
     // How the products of the surface's normal with the rays of the last view change, relative to the one at `place`.
@@ -126,12 +130,18 @@ void main()
     bool blocked = r.known < 0.0 && !belowHorizon && blocks(l, abs(z), corner + 0.5 - l.texel) > 0.0;
     float tau = r.known >= 0.0 ? r.known : belowHorizon || blocked ? 1.0 : 0.0;
     bool moving = blocked && z < 0.0;
+#ifdef MOVERS
+    moving = texelFetch(movers, r.pixel, 0).x > 0.0;
+#endif
 
     Found past = lookUp(r);
-    History h = limited(past.h, keep.x);
+    History h = limited(past.h, past.moves ? min(keep.x, keep.z) : keep.x);
     bool tagged = moving;
 #if MOVING == MOVING_DISOCCLUSION
     h = limited(h, moving ? 0.0 : h.n);
+#elif MOVING == MOVING_REGION
+    // The shadow that a frame has is not that of the next, neither under it nor where it has just been.
+    h = limited(h, moving || past.tagged ? 0.0 : h.n);
 #elif MOVING == MOVING_DECREMENT
     // Under a moving caster as new; afterwards ever fewer samples, and few at once where there are many.
     History fewer = h.n > dropAbove ? limited(h, float(decrement)) : decremented(h, float(decrement));
