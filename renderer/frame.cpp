@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "renderer/frame.h"
 
+#include "renderer/shading.h"
 #include "renderer/surfaces.h"
 
 #include <algorithm>
@@ -13,9 +14,6 @@ constexpr Scope frameScope{};
 constexpr Scope truthScope{.instance = {}, .owner = "truth"};
 constexpr Scope compareScope{.instance = {}, .owner = "compare"};
 
-constexpr Channel litChannels[] = {{"red", "", "reflected light, linear"},
-                                   {"green", "", "reflected light, linear"},
-                                   {"blue", "", "reflected light, linear"}};
 constexpr Channel truthChannels[] = {
     {"shadow", "ψ*", "share of the light that is not seen, by traced rays", Unit::None, 0, 1},
     {"counted", "", "1 where errors are counted: the surface faces the whole light", Unit::None, 0, 1}};
@@ -26,35 +24,11 @@ constexpr Channel displayChannels[] = {{"red", "", "as shown, sRGB", Unit::None,
                                        {"green", "", "as shown, sRGB", Unit::None, 0, 1},
                                        {"blue", "", "as shown, sRGB", Unit::None, 0, 1}};
 
-struct LightingConstants {
-    ViewBlock view;
-    mat4 lightFromWorld;
-    vec4 colour_ambient; // light's colour · intensity, w = ambient
-    vec4 shape_reach;    // x = LightShape, y = distance at which intensity holds [m], zw = size of the light [m]
-};
-
 struct DisplayConstants {
     vec4 exposure_show; // x = factor, y = Show
     vec4 halves;        // x = first column that shows the other image, y = the column where that image begins
     vec4 gain;          // x = factor on errors
 };
-
-Image shade(Flow& flow, Scope scope, const Session& session, const View& view, const Surfaces& surfaces, Image shadow) {
-    const AreaLight& light = session.light;
-    const Extent extent = flow.spec(shadow).extent;
-    const LightingConstants constants{
-        viewBlock(view), lightFromWorld(light), vec4(light.colour * light.intensity, session.display.ambient),
-        vec4(static_cast<float>(light.shape), glm::distance(light.position, light.target), light.size)};
-    return flow.pass(scope, {.stage = Stage::Lighting,
-                             .name = "lit",
-                             .work = Compute{"lighting.glsl"},
-                             .reads = {{"depth", surfaces.buffer.depth},
-                                       {"normal", surfaces.buffer.normal},
-                                       {"colour", surfaces.colour},
-                                       {"shadow", shadow}},
-                             .writes = {{"lit", Format::RGBA16F, extent, litChannels}},
-                             .constants = constants});
-}
 
 Image supply(Flow& flow, const TruthImage& truth, glm::ivec2 size) {
     return flow.pass(truthScope, {.stage = Stage::Display,
@@ -132,6 +106,7 @@ Frame buildFrame(Flow& flow, const Session& session, const SceneState& state, co
     const View lastView = last ? grown(last->view, marginOf(last->view.size)) : view;
     poseVertices(flow, state, geometry);
     const Surfaces surfaces = drawSurfaces(flow, view, state, geometry, lastView.clipFromWorld);
+    const Shading shading{surfaces.colour, session.display.ambient, session.display.exposure};
     const Inputs inputs{view,
                         session.light,
                         surfaces.buffer,
@@ -143,7 +118,8 @@ Frame buildFrame(Flow& flow, const Session& session, const SceneState& state, co
                         session.progressive,
                         margin,
                         last,
-                        inspection};
+                        inspection,
+                        &shading};
     // Two techniques are instances a and b of one frame; what they need alike, such as the geometry buffer, is made
     // once.
     const bool lit = session.display.show == Show::Lit;
@@ -160,7 +136,7 @@ Frame buildFrame(Flow& flow, const Session& session, const SceneState& state, co
     }
 
     const auto seen = [&](Image image, Scope scope) {
-        return lit ? shade(flow, scope, session, view, surfaces, image) : image;
+        return lit ? shade(flow, scope, view, session.light, surfaces.buffer, shading, image) : image;
     };
     const auto display = [&] {
         const Scope own{.instance = two ? "a" : "", .owner = {}};

@@ -23,8 +23,8 @@ struct GeometryBuffer {
 struct Occluder {
     Bounds boundsWorld;
     bool casts = true;
-    bool closed = false; // a closed surface; see scene/closed_surface.h
-    bool moved = false;  // its pose differs from the last frame's
+    bool closed = false;                     // a closed surface; see scene/closed_surface.h
+    bool moved = false;                      // its pose differs from the last frame's
     std::span<const Bounds> partsWorld = {}; // that hold it more closely; empty: only boundsWorld does
 };
 
@@ -41,6 +41,13 @@ struct Inspection {
     bool operator==(const Inspection&) const = default;
 };
 
+// What of a surface's look is not the shadow's.
+struct Shading {
+    Image colour;   // base colour, as the geometry buffer's pass writes it
+    float ambient;  // light from everywhere
+    float exposure; // [stops]
+};
+
 struct Inputs {
     const View& view; // of the geometry buffer: the picture with Technique::margin() around it
     const AreaLight& light;
@@ -54,6 +61,7 @@ struct Inputs {
     glm::ivec2 margin{0, 0};         // of the view [pixels]
     const LastFrame* last = nullptr; // null: this is the first
     Inspection inspection = {};
+    const Shading* shading = nullptr; // how it is shown, if it is
 
     glm::ivec2 pictureSize() const { return view.size - 2 * margin; }
 };

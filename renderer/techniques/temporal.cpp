@@ -13,6 +13,7 @@
 // 32 bits, 16 in 16. The picture has a margin in it, so that what comes into view has a history.
 #include "renderer/core/hash.h"
 #include "renderer/core/technique.h"
+#include "renderer/shading.h"
 #include "renderer/shadow_map/poisson_disk.h"
 #include "renderer/shadow_map/shadow_map.h"
 
@@ -189,6 +190,17 @@ struct FilterParameters : ParameterGroup {
                                  .choices = errorNames,
                                  .active = filters,
                                  .inactiveReason = filterIsOff}};
+    Real guided{set,
+                {.id = "guided",
+                 .label = "Guided by what is seen",
+                 .value = 0,
+                 .min = 0,
+                 .max = 1,
+                 .source = "thesis 5.2.4 (light and material parameters)",
+                 .help = "How far errors count as they are seen: less where ambient light, grazing light or a dark "
+                         "colour hide them, so that fewer pixels are filtered. The errors of ψ itself grow.",
+                 .active = filters,
+                 .inactiveReason = filterIsOff}};
     Flag turn{set,
               {.id = "turn",
                .label = "Turn per pixel",
@@ -517,7 +529,12 @@ public:
                     .shadow = {"shadow", Format::R32F, {size.x, size.y}, shadowChannels()}};
         if (parameters_.start != Start::Hard && !stands(inputs, past))
             frame.starting = flow.tiles(scope, "starting", buffer.extent);
-        if (filters(parameters_)) frame.asking = flow.tiles(scope, "asking", frame.shadow.extent);
+        if (filters(parameters_)) {
+            frame.asking = flow.tiles(scope, "asking", frame.shadow.extent);
+            if (parameters_.filter.guided > 0 && inputs.shading)
+                frame.attenuation =
+                    drawAttenuation(flow, inputs.view, inputs.light, inputs.geometryBuffer, *inputs.shading);
+        }
 
         const Flow::Outputs images = addSample(flow, scope, inputs, frame, most);
         if (frame.starting) start(flow, scope, inputs, frame, images);
@@ -531,8 +548,9 @@ private:
         const ShadowMap& estimated; // what estimates look at
         const PastImage& past;
         ImageSpec buffer, shadow;
-        std::optional<TileSet> starting = {}; // of the buffer: surfaces without a history
-        std::optional<TileSet> asking = {};   // of the picture: they ask their neighbours
+        std::optional<TileSet> starting = {};  // of the buffer: surfaces without a history
+        std::optional<TileSet> asking = {};    // of the picture: they ask their neighbours
+        std::optional<Image> attenuation = {}; // where what is seen guides the filter
     };
 
     static bool moves(const Inputs& inputs) { return inputs.geometryBuffer.motion.has_value(); }
@@ -609,7 +627,7 @@ private:
 
     // The buffer, what its samples say the shadow is and, where somebody looks, the test.
     Flow::Outputs addSample(Flow& flow, Scope scope, const Inputs& inputs, const Frame& frame, int32_t most) const {
-        const auto& [map, estimated, past, buffer, shadow, starting, asking] = frame;
+        const auto& [map, estimated, past, buffer, shadow, starting, asking, attenuation] = frame;
         const float kept = lightChanged(inputs) ? float(parameters_.lightMemory) : float(mostFloats);
         Resolver resolver{.shader = "techniques/temporal.glsl",
                           .constants = historyConstants(inputs, map.view, kept, most, parameters_.lightMemory),
@@ -634,7 +652,14 @@ private:
                 reads.push_back({"movers", findMovers(flow, scope, inputs, frame)});
             }
         }
+        guide(frame, resolver, reads);
         return resolve(flow, scope, inputs, resolver, reads, parameters_);
+    }
+
+    static void guide(const Frame& frame, Resolver& resolver, PassReads& reads) {
+        if (!frame.attenuation) return;
+        resolver.defines.push_back({"GUIDED"});
+        reads.push_back({"attenuation", *frame.attenuation});
     }
 
     // Estimates what surfaces without a history begin with.
@@ -648,7 +673,9 @@ private:
                           .over = frame.starting};
         if (frame.buffer.format == Format::RGBA16F) resolver.defines.push_back({"HALFS"});
         if (frame.asking) resolver.defines.push_back({"FILTERED"}), resolver.marks.push_back(*frame.asking);
-        resolve(flow, scope, inputs, resolver, {{"shadowMap", frame.estimated.depth}}, parameters_);
+        PassReads reads{{"shadowMap", frame.estimated.depth}};
+        if (frame.asking) guide(frame, resolver, reads);
+        resolve(flow, scope, inputs, resolver, reads, parameters_);
     }
 
     // Where something that moves takes light.
@@ -696,6 +723,7 @@ private:
             resolver.also.push_back({"neighbours", Format::RGBA32F, {mostTaps, 1}, neighbourChannels});
         }
         resolver.constants = constants;
+        guide(frame, resolver, reads);
         resolve(flow, scope, inputs, resolver, reads, parameters_);
     }
 

@@ -178,7 +178,7 @@ void main()
     if (starts) MARK(starting, r.pixel)
 #endif
 #ifdef FILTERED
-    if (surface && !starts && asksNeighbours(h, blocker)) MARK(asking, pixel)
+    if (surface && !starts && asksNeighbours(h, blocker, visibleAt(r.pixel))) MARK(asking, pixel)
 #endif
 #ifdef INSPECTED
     vec2 point = s / max(lightView.light.xy, vec2(1e-9));

@@ -40,12 +40,13 @@ void main()
     History h = History(here.x, here.y);
     float eyeDepth = abs(here.z);
 
-    float sampled = sampledOf(h);
+    float visible = visibleAt(texel);
+    float sampled = sampledOf(h, visible);
     History sum = h;
 #ifdef PROBED
     int asks = 0; // neighbours
 #endif
-    if (NEIGHBOURHOOD != NEIGHBOURHOOD_OFF && eyeDepth > 0.0 && asksNeighbours(h, here.w)) {
+    if (NEIGHBOURHOOD != NEIGHBOURHOOD_OFF && eyeDepth > 0.0 && asksNeighbours(h, here.w, visible)) {
         vec3 n = unitFromOctahedral(texelFetch(normal, texel, 0).xy);
         vec2 centre = vec2(texel) + 0.5;
         vec3 ray = view.rayCorner.xyz + centre.x * view.rayDx.xyz + centre.y * view.rayDy.xyz;

@@ -42,6 +42,6 @@ void main()
         imageStore(shadow, pixel, vec4(clamp(estimated(h), 0.0, 1.0)));
     }
 #ifdef FILTERED
-    if (fresh && asksNeighbours(h, blocker)) MARK(asking, pixel)
+    if (fresh && asksNeighbours(h, blocker, visibleAt(r.pixel))) MARK(asking, pixel)
 #endif
 }

@@ -365,6 +365,7 @@ TEST_CASE("bad input to measure is refused in one line") {
     requireRefused(command({"--repeat", "0"}), {"--repeat"});
     for (const char* shard : {"0/2", "3/2", "1", "1/", "/2", "a/b", "1/2/3", "-1/2"})
         requireRefused(command({"--shard", shard}), {"--shard", shard});
+    requireRefused(command({"--motion", "caster-moves"}), {"--motion", "nothing moves in two-boxes"});
     requireRefused(command({"--path", "orbits"}), {"--path", "orbits", "No such file"});
     requireRefused(command({"--view", "courtyart"}), {"--view", "did you mean 'courtyard'?"});
     requireRefused(command({"--json", "--csv"}), {"--json", "--csv"});

@@ -172,5 +172,17 @@ TEST_CASE("the presets of the papers have the values of the papers, whatever the
     CHECK(value("pcf/gaussian-9x9", "shape") == "gaussian");
     CHECK(value("pcf/gaussian-9x9", "kernel") == "9");
     CHECK(value("pcf/gaussian-9x9", "sigma") == "2.4");
+    for (const auto& [parameter, paper, thesis] : {std::tuple("format", "16f", "32f"),
+                                                   {"depth-test", "absolute", "relative"},
+                                                   {"moving", "disocclusion", "decrement"},
+                                                   {"mixing", "threshold", "blend"},
+                                                   {"error", "equation-3", "equation-3"},
+                                                   {"central-map", "off", "off"},
+                                                   {"guided", "0", "0"},
+                                                   {"taps", "16", "16"}}) {
+        CAPTURE(parameter);
+        CHECK(value("temporal/paper", parameter) == paper);
+        CHECK(value("temporal/thesis", parameter) == thesis);
+    }
     ::unsetenv("PENUMBRA_CONFIG_DIR");
 }

@@ -267,6 +267,54 @@ TEST_CASE("things that move keep their history, and the shadows of things that m
     CHECK(kept > 0.8 * moved);
 }
 
+TEST_CASE("where something moves, the shadow is no worse than an estimate, and follows when it has left") {
+    Bench b(wavingScene());
+    b.s.size = {96, 72};
+    b.s.techniques.parametersOf("light-sampling").at("samples").set(256);
+    b.s.techniques.parametersOf("pcss").at("rotate").set(1);
+    const auto errors = [&](const char* rule, const char* central) {
+        b.set("moving", rule), b.set("central-map", central);
+        renderer().reset();
+        b.s.time = 0.1;
+        b.frames(8);
+        std::vector<float> last;
+        for (int i = 0; i < 8; ++i) b.s.time += 0.02, last = b.frame();
+        b.s.progressive = false;
+        const std::vector<float> truth = b.of("light-sampling"), estimate = b.of("pcss");
+        b.s.progressive = true;
+        return std::pair(rmse(last, truth), rmse(estimate, truth));
+    };
+    const auto [region, estimate] = errors("region", "on");
+    const double jumping = errors("region", "off").first, paper = errors("disocclusion", "off").first;
+    CAPTURE(region, estimate, jumping, paper);
+    CHECK(region < 1.15 * estimate);
+    CHECK(region < jumping);
+    CHECK(region < 0.8 * paper);
+}
+
+TEST_CASE("the filter asks the less the less is seen of a shadow") {
+    Bench b;
+    b.s.display.show = Show::Lit;
+    const auto share = [&](const char* guided, float ambient) { // of the pixels that are filtered
+        b.set("guided", guided);
+        b.s.display.ambient = ambient;
+        renderer().reset();
+        b.frames(6);
+        const std::vector<float> with = renderer().read(renderer().shadow()).values;
+        b.set("neighbourhood", "off");
+        renderer().reset();
+        b.frames(6);
+        const std::vector<float> without = renderer().read(renderer().shadow()).values;
+        b.set("neighbourhood", "poisson");
+        return differing(with, without);
+    };
+    const double all = share("0", 0.2f);
+    CHECK(all > 0.05);
+    CHECK(share("0", 50) == all); // what is seen does not count
+    CHECK(share("1", 50) == 0);   // nothing of the light is seen
+    CHECK(share("0.5", 0.2f) <= all);
+}
+
 TEST_CASE("a light that moves leaves as many samples as it is told, and none of a history where that is 0") {
     for (const char* memory : {"0", "6"}) {
         Bench b;
