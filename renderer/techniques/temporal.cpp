@@ -229,7 +229,9 @@ struct Parameters : ParameterSet {
                                  "from the light's centre, or one hard test with or without a search for blockers, "
                                  "which the filter needs.",
                          .choices = startNames}};
-    static bool searches(const ParameterSet& set) { return !is(set, "start", Start::Hard); }
+    static bool searches(const ParameterSet& set) {
+        return !is(set, "start", Start::Hard) || is(set, "moving", Moving::Region);
+    }
     static bool estimates(const ParameterSet& set) { return is(set, "start", Start::Pcss); }
     Integer startWeight{*this,
                         {.id = "start-weight",
@@ -254,9 +256,9 @@ struct Parameters : ParameterSet {
                         .max = mostTaps,
                         .unit = Unit::Samples,
                         .source = "Scherzer 2009, 4 (16)",
-                        .help = "Texels looked at for blockers where there is no history.",
+                        .help = "Texels looked at for blockers where there is no history, and for things that move.",
                         .active = searches,
-                        .inactiveReason = "a hard start does not search"}};
+                        .inactiveReason = "neither a hard start nor the rule for moving casters searches"}};
     Integer filterTaps{*this,
                        {.id = "filter-taps",
                         .label = "Filter taps",
@@ -276,7 +278,7 @@ struct Parameters : ParameterSet {
                  .source = "Cranley and Patterson 1976; Jimenez 2014 (noise)",
                  .help = "Other taps of search and filter in every pixel: bands become noise.",
                  .active = searches,
-                 .inactiveReason = "a hard start has no taps"}};
+                 .inactiveReason = "neither a hard start nor the rule for moving casters has taps"}};
     Integer blockerWeight{*this,
                           {.id = "blocker-weight",
                            .label = "Blocker weight",

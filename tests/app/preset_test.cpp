@@ -177,7 +177,7 @@ TEST_CASE("the presets of the papers have the values of the papers, whatever the
                                                    {"moving", "disocclusion", "decrement"},
                                                    {"mixing", "threshold", "blend"},
                                                    {"error", "equation-3", "equation-3"},
-                                                   {"central-map", "off", "off"},
+                                                   {"central-map", "false", "false"},
                                                    {"guided", "0", "0"},
                                                    {"taps", "16", "16"}}) {
         CAPTURE(parameter);
