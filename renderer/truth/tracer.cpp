@@ -178,8 +178,8 @@ void Tracer::findPoints() {
     squares_.push_back(static_cast<uint32_t>(points_.size()));
 }
 
-// Of the points whose rays all found the light so far, those of which every ray would. Of those whose rays all hit
-// something it does not pay to know more: their rays end soon.
+// Of the points whose rays, or their neighbour's, all found the light so far, those of which every ray would. Of those
+// whose rays all hit something it does not pay to know more: their rays end soon.
 void Tracer::dropCertain() {
     const Shafts::Target target(input_.light);
     std::vector<uint8_t> sees(points_.size());
@@ -205,7 +205,6 @@ void Tracer::dropCertain() {
             points_[kept++] = points_[i];
     }
     points_.erase(points_.begin() + static_cast<ptrdiff_t>(kept), points_.end());
-    askAll();
 }
 
 namespace {
@@ -370,22 +369,21 @@ void Tracer::estimate() {
     truth_.meanPenumbraStandardError = truth_.penumbraPixels ? errors / truth_.penumbraPixels : 0;
 }
 
-// Decides how many rays each pixel gets this round. A quarter get 16, then all, then all get 64 ... up to the least
-// number. Then those get more whose standard error is above the wanted one. It is judged by the mean variance of
-// the 3x3 pixels around: that of one pixel's eight replicates is itself so uncertain that those which seem good by
-// chance would be left alone; and a pixel whose rays all agree beside one whose rays do not is not certain.
+// Decides how many rays each pixel gets this round. A quarter get 16; then all that shafts leave get 64, and what is
+// left to the least number at once, as many rays of a pixel are cheaper together. Then those get more whose standard
+// error is above the wanted one. It is judged by the mean variance of the 3x3 pixels around: that of one pixel's eight
+// replicates is itself so uncertain that those which seem good by chance would be left alone; and a pixel whose rays
+// all agree beside one whose rays do not is not certain.
 bool Tracer::plan() {
     const auto least = roundedUp(static_cast<uint32_t>(settings_.leastSamples));
     const auto most = std::max(least, roundedUp(static_cast<uint32_t>(settings_.mostSamples)));
     if (points_.empty()) return false;
     if (raysTraced_ == 0) return true; // the constructor has asked
     if (raysOfAll_ < least) {
-        if (raysOfAll_ == firstRays && settings_.shafts)
-            dropCertain();
-        else
-            askAll();
+        if (raysOfAll_ == 0 && settings_.shafts) dropCertain();
+        askAll();
         if (points_.empty()) return false;
-        raysOfAll_ = raysOfAll_ == 0 ? firstRays : std::min({4 * raysOfAll_, raysOfAll_ + 192, least});
+        raysOfAll_ = raysOfAll_ == 0 ? std::min(4 * firstRays, least) : std::min(raysOfAll_ + batch, least);
         for (Point& point : points_) point.wanted = raysOfAll_;
         return true;
     }

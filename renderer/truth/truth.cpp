@@ -17,7 +17,7 @@ using Clock = std::chrono::steady_clock;
 double secondsSince(Clock::time_point start) { return std::chrono::duration<double>(Clock::now() - start).count(); }
 
 // Another number makes all kept truths old: for a change of what is traced.
-constexpr uint32_t traceVersion = 4;
+constexpr uint32_t traceVersion = 5;
 
 uint64_t hashOf(const TruthInput& input, const TruthSettings& settings, const Casters& casters) {
     Hash hash;
