@@ -107,8 +107,7 @@ MeasurementPlan makePlan(const Options& options, const Session& session) {
         }
     }
     plan.motion = motionOf(options);
-    if (plan.motion && movesCasters(*plan.motion) &&
-        (session.clip >= session.scene->animations.size() || session.scene->animations[session.clip].duration <= 0))
+    if (plan.motion && movesCasters(*plan.motion) && session.scene->duration(session.clip) <= 0)
         throw InputError(fmt::format("--motion: nothing moves in {}; {} needs an animation", session.scene->name,
                                      motionNames()[static_cast<size_t>(*plan.motion)]));
     plan.moves = plan.path || plan.motion || session.timeStep != 0;

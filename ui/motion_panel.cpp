@@ -73,13 +73,13 @@ std::string MotionPanel::poll() {
     }
 }
 
-void MotionPanel::draw(const Session& session, const SceneFacts& facts, bool busy) {
+void MotionPanel::draw(const Session& session, bool busy) {
     const float em = ImGui::GetFontSize();
     const ImVec2 room = ImGui::GetContentRegionAvail();
     const float right = std::min(controlsWidth * em, 0.5f * room.x);
     chart({std::max(room.x - right - ImGui::GetStyle().ItemSpacing.x, 1.0f), std::max(room.y, 1.0f)});
     ImGui::SameLine();
-    if (ImGui::BeginChild("motion controls", {0, 0})) controls(session, facts, busy);
+    if (ImGui::BeginChild("motion controls", {0, 0})) controls(session, busy);
     ImGui::EndChild();
 }
 
@@ -138,8 +138,8 @@ void MotionPanel::progress() {
     text(colour::muted, state.cancelled() ? "stopping" : state.doing());
 }
 
-void MotionPanel::controls(const Session& session, const SceneFacts& facts, bool busy) {
-    const bool animated = facts.duration(session.clip) > 0;
+void MotionPanel::controls(const Session& session, bool busy) {
+    const bool animated = session.scene->duration(session.clip) > 0;
     const auto possible = [&](int event) { return animated || !movesCasters(static_cast<MotionEvent>(event)); };
     constexpr const char* still = "Nothing in this scene is animated.";
     row("Event");

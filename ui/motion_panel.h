@@ -4,7 +4,6 @@
 #pragma once
 
 #include "ui/plot.h"
-#include "ui/scene_facts.h"
 
 #include "renderer/measure/background_measurement.h"
 
@@ -21,7 +20,7 @@ public:
         , cache_(cache) {}
 
     // Draws into the current ImGui window. `busy`: something else is measured, which this would disturb.
-    void draw(const Session& session, const SceneFacts& facts, bool busy);
+    void draw(const Session& session, bool busy);
     // Takes in what was measured meanwhile; call it every frame, whether the panel is drawn or not. A line to say, or
     // nothing.
     std::string poll();
@@ -40,7 +39,7 @@ private:
         return error_ == Error::All ? course.all : course.penumbra;
     }
     void chart(ImVec2 size) const;
-    void controls(const Session& session, const SceneFacts& facts, bool busy);
+    void controls(const Session& session, bool busy);
     void progress();
     void numbers() const;
 

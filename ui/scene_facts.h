@@ -13,11 +13,6 @@ struct SceneFacts {
     float size = 1; // diagonal of the bounds [m], never 0
     uint64_t triangles = 0;
 
-    // Of a clip [s]; 0: a still scene.
-    double duration(size_t clip) const {
-        return clip < scene->animations.size() ? static_cast<double>(scene->animations[clip].duration) : 0;
-    }
-
     explicit SceneFacts(std::shared_ptr<const Scene> scene);
 };
 

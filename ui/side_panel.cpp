@@ -14,7 +14,7 @@ Requests SidePanel::draw(Session& session, const SceneFacts& facts, Playback& pl
     if (section("Scene", true)) {
         ImGui::PushID("scene");
         scene(session, facts, requests);
-        timeControls(session, facts, playback);
+        timeControls(session, playback);
         ImGui::PopID();
     }
     const bool two = session.comparison.against == Against::Technique;
@@ -117,8 +117,8 @@ void SidePanel::choices(const Scene& scene, Requests& requests) {
     }
 }
 
-void timeControls(Session& session, const SceneFacts& facts, Playback& playback) {
-    const std::vector<Animation>& clips = facts.scene->animations;
+void timeControls(Session& session, Playback& playback) {
+    const std::vector<Animation>& clips = session.scene->animations;
     if (clips.empty()) return;
     if (clips.size() > 1) {
         row("Clip");
@@ -135,7 +135,7 @@ void timeControls(Session& session, const SceneFacts& facts, Playback& playback)
         }
         tooltip("The animations that the file holds");
     }
-    const double first = 0, duration = facts.duration(session.clip);
+    const double first = 0, duration = session.scene->duration(session.clip);
     if (duration <= 0) return;
     row("Time");
     double now = std::fmod(session.time, duration);

@@ -81,7 +81,7 @@ private:
     TextField<101> presetName_;
 };
 
-void timeControls(Session& session, const SceneFacts& facts, Playback& playback);
+void timeControls(Session& session, Playback& playback);
 void displayControls(DisplaySettings& display);
 
 } // namespace penumbra

@@ -213,7 +213,7 @@ void Workspace::strokes(const Keys& keys) {
 
 void Workspace::advanceTime(float seconds) {
     session_.timeStep = 0;
-    if (facts_.duration(session_.clip) <= 0) playback_.playing = playback_.stepOnce = false;
+    if (session_.scene->duration(session_.clip) <= 0) playback_.playing = playback_.stepOnce = false;
     if (playback_.playing && history_.frozen()) // time stands, too; frame by frame it goes on in steps of its own
         session_.timeStep = history_.counting() ? step * static_cast<double>(playback_.speed) : 0;
     else if (playback_.playing)
@@ -355,7 +355,7 @@ void Workspace::drawTradeOff() {
 
 void Workspace::drawMotion() {
     const bool idle = !motion_.measuring();
-    motion_.draw(session_, facts_, tradeOff_.measuring());
+    motion_.draw(session_, tradeOff_.measuring());
     if (idle && motion_.measuring()) playback_.playing = false; // it starts from a moment
 }
 

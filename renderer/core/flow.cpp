@@ -139,9 +139,8 @@ Flow::Outputs Flow::pass(Scope scope, const PassSpec& spec) {
 }
 
 TileSet Flow::tiles(Scope scope, std::string_view name, Extent extent) {
-    constexpr int texels = 8;
     ensure(extent.layers == 1, "tiles of a layered image");
-    tileSets_.push_back({name, intern(scope, name), (extent.width + texels - 1) / texels, extent.height});
+    tileSets_.push_back({name, intern(scope, name), (extent.width + groupSide - 1) / groupSide, extent.height});
     return TileSet(static_cast<int>(tileSets_.size()) - 1);
 }
 

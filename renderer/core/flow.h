@@ -63,7 +63,10 @@ enum class Sampling : uint8_t {
     Compare, // depth formats: hardware comparison reference <= stored, bilinear over the four results
 };
 
-// A set of tiles, eight texels of a row each, of images of one extent. Passes of this frame put tiles into it, and
+// Compute shaders work in groups of so many by so many texels; see shaders/band.glsl.
+inline constexpr int groupSide = 8;
+
+// A set of tiles, each a group's row of texels, of images of one extent. Passes of this frame put tiles into it, and
 // later ones run over those alone: software renderers, and groups of threads on a GPU, skip work only as a whole.
 class TileSet {
 public:
@@ -93,7 +96,7 @@ struct Define {
 };
 using Defines = FixedVector<Define, 8>;
 
-// One invocation per texel of the first written image, in groups of 8x8.
+// One invocation per texel of the first written image.
 struct Compute {
     std::string_view shader; // file below shaders/
     Defines defines = {};
@@ -220,7 +223,7 @@ public:
         int width, height; // tiles
 
         // As shaders/tiles.glsl has it, and a group's tiles more, so that none is read past the end.
-        uint64_t bytes() const { return 4 * (8 + 2 * uint64_t(width) * uint64_t(height) + 8); }
+        uint64_t bytes() const { return 4 * (8 + 2 * uint64_t(width) * uint64_t(height) + groupSide); }
     };
     using Writes = FixedVector<ImageSpec, 5>;
 

@@ -14,8 +14,6 @@
 namespace penumbra {
 namespace {
 
-constexpr int groupSize = 8; // compute shaders work in groups of 8x8
-
 constexpr double dearFrame = 16;       // [ms]; a frame that took less goes at one go
 constexpr size_t firstBandShare = 128; // of a pass whose pace is not known, and
 constexpr size_t fewestFirst = 16;     // groups of texels at least
@@ -26,8 +24,8 @@ constexpr double forever = std::numeric_limits<double>::infinity();
 struct Groups {
     size_t width, height, layers;
     explicit Groups(const Extent& extent)
-        : width(static_cast<size_t>((extent.width + groupSize - 1) / groupSize))
-        , height(static_cast<size_t>((extent.height + groupSize - 1) / groupSize))
+        : width(static_cast<size_t>((extent.width + groupSide - 1) / groupSide))
+        , height(static_cast<size_t>((extent.height + groupSide - 1) / groupSide))
         , layers(static_cast<size_t>(extent.layers)) {}
     size_t count() const { return width * height * layers; }
 };
@@ -212,7 +210,7 @@ void FlowRunner::bindTiles(const Flow& flow, const Flow::PassNode& pass, const P
 // empty.
 void FlowRunner::dispatchOver(const Flow& flow, const Flow::PassNode& pass, TileSet over, size_t tiles) {
     const size_t all = partsOf(flow, pass);
-    tiles = (tiles + groupSize - 1) / groupSize * groupSize; // of which each fills a row of a group
+    tiles = (tiles + groupSide - 1) / groupSide * groupSide; // of which each fills a row of a group
     const GLuint buffer = tilesOf(flow, over).buffer.name();
     const auto use = [&](std::string_view shader) -> const Program& {
         const Program& program = tileProgram(shader);
@@ -258,7 +256,7 @@ void FlowRunner::dispatch(const Flow& flow, const Flow::PassNode& pass, size_t g
     }
     glUseProgram(program.name());
     if (program.bandOrigin() >= 0)
-        glUniform3ui(program.bandOrigin(), static_cast<GLuint>(x) * groupSize, static_cast<GLuint>(y) * groupSize,
+        glUniform3ui(program.bandOrigin(), static_cast<GLuint>(x) * groupSide, static_cast<GLuint>(y) * groupSide,
                      static_cast<GLuint>(layer));
     glDispatchCompute(static_cast<GLuint>(band.width), static_cast<GLuint>(band.height),
                       static_cast<GLuint>(band.layers));

@@ -179,6 +179,9 @@ struct Scene {
     uint64_t triangleCount() const; // as drawn: over all visible nodes
     // The clip of that name. Throws InputError with the names that there are.
     size_t findClip(std::string_view name) const;
+    float duration(size_t clip) const {
+        return clip < animations.size() ? animations[clip].duration : 0;
+    } // [s]; 0: still
 };
 
 // One moment of a scene.

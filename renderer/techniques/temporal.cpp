@@ -6,9 +6,11 @@
 //   1. shadow map from the next point. The sequence starts over with the history: when the picture's size, the pixel
 //      format, a parameter that the history depends on, or the number of things in the scene changes, or on a reset
 //   2. resolve: each pixel finds its surface in the last frame's shadow buffer; the same surface keeps ρ and n and adds
-//      its test (eq. 5), a new one starts with an estimate
-//   3. filter: what is shown is ψ̂ where its standard error (eq. 3) is small, else a mean of neighbours
+//      its test (eq. 5), a new one is marked
+//   3. start: what is marked as new begins with an estimate
+//   4. filter: what is shown is ψ̂ where its standard error (eq. 3) is small; what is marked asks its neighbours
 //
+// While something moves there are a second map, from the light's centre, and a search for what moves before the light.
 // The buffer holds ρ_n, n, eye depth and mean blocker depth, twice (last frame's and this one's): 32 bytes a pixel in
 // 32 bits, 16 in 16. The picture has a margin in it, so that what comes into view has a history.
 #include "renderer/core/hash.h"
@@ -192,7 +194,7 @@ struct FilterParameters : ParameterGroup {
                                  .inactiveReason = filterIsOff}};
     Real guided{set,
                 {.id = "guided",
-                 .label = "Guided by what is seen",
+                 .label = "Guidance",
                  .value = 0,
                  .min = 0,
                  .max = 1,
@@ -426,7 +428,7 @@ struct HistoryConstants {
     ResolveConstants resolve;
     vec4 lastX, lastY, lastForward; // from a place relative to the eye [m] to last frame's: d (x, y) [pixels], d [m]
     vec4 lastRayCorner, lastRayDx, lastRayDy; // of last frame's view
-    vec4 keep;    // x = most samples that a history keeps in this frame, y = most that one may have
+    vec4 keep;    // most samples that a history keeps: x in this frame, z if its surface moves; y = that it may have
     vec4 picture; // xy of its first pixel in the buffer
 };
 
