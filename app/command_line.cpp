@@ -158,6 +158,11 @@ constexpr ListOption setOption = {"--set", "NAME=VALUE",
                                   "a parameter: TECHNIQUE.PARAMETER=VALUE, or PARAMETER=VALUE of the chosen technique; "
                                   "may be given several times",
                                   &Options::assignments, false};
+constexpr ListOption furtherLightOption = {
+    "--further-light", "X,Y,Z,TX,TY,TZ",
+    "another light like the first and half as bright, at a place of its own; up to three. ψ and errors are of the "
+    "first",
+    &Options::furtherLights, false};
 constexpr ListOption measureLists[] = {
     {"--sweep", "NAME=VALUES",
      "a row for each of FROM:TO:STEPS, FROM:TO:STEPS:log or V1,V2,V3 of a parameter; several make every combination",
@@ -214,6 +219,7 @@ void addCommonOptions(CLI::App& app, Options& options) {
     for (const ValueOption& option : commonOptions) addValueOption(app, option, options);
     addCountOption(app, frameOption, options);
     addListOption(app, setOption, options);
+    addListOption(app, furtherLightOption, options);
     app.add_flag("--play", options.play, "let time run, 1/60 s a frame");
     app.add_flag("--json", options.json, "print results as JSON");
     app.allow_extras(); // so that we can name the nearest option ourselves
@@ -280,12 +286,14 @@ void sizeLight(AreaLight& light, std::string_view text) {
     light.size = {v.front(), v.back()};
 }
 
+void stand(AreaLight& light, std::string_view option, std::string_view place) {
+    const std::vector<float> v = parseLook(option, place, false);
+    light.position = {v[0], v[1], v[2]};
+    light.target = {v[3], v[4], v[5]};
+}
+
 void placeLight(AreaLight& light, const Options& options) {
-    if (options.light) {
-        const std::vector<float> v = parseLook("--light", *options.light, false);
-        light.position = {v[0], v[1], v[2]};
-        light.target = {v[3], v[4], v[5]};
-    }
+    if (options.light) stand(light, "--light", *options.light);
     if (options.lightShape)
         changeShape(light,
                     static_cast<LightShape>(nameOption("--light-shape", *options.lightShape, lightShapeNames())));
@@ -425,6 +433,15 @@ Session makeSession(const Options& given, Shot& shot) {
 
     if (options.camera) placeCamera(session.camera, *options.camera);
     placeLight(session.light, options);
+    if (options.furtherLights.size() > mostFurtherLights)
+        throw InputError(fmt::format("--further-light: at most {} were expected", mostFurtherLights));
+    if (!options.furtherLights.empty()) session.furtherLights.clear();
+    for (const std::string& place : options.furtherLights) {
+        FurtherLight further{session.light};
+        further.light.intensity *= furtherLightShare;
+        stand(further.light, "--further-light", place);
+        session.furtherLights.push_back(further);
+    }
     static constexpr std::string_view switches[] = {"off", "on"};
     if (options.ground) session.ground = nameOption("--ground", *options.ground, switches) == 1;
     if (options.size) session.size = parseSize(*options.size);

@@ -20,6 +20,7 @@ struct Options {
     std::optional<std::string> technique, preset, size, seed;
     std::vector<std::string> assignments; // --set
     std::optional<std::string> camera, light, lightShape, lightSize, ground;
+    std::vector<std::string> furtherLights;
     std::optional<std::string> time, show, exposure, ambient, textureLimit;
     std::optional<std::string> output, buffer, truth; // capture
     std::optional<std::string> view;

@@ -272,7 +272,8 @@ uint64_t viewHash(const Session& session, const MeasurementPlan& plan) {
 Json viewJson(const Options& options, const Session& session, const MeasurementPlan& plan) {
     const Json facts = factsOf(session, Shot(), "");
     Json view = {{"name", options.view ? Json(*options.view) : Json()}};
-    for (const char* fact : {"camera", "light", "ground", "time", "time-step", "seed"}) view[fact] = facts.at(fact);
+    for (const char* fact : {"camera", "light", "further-lights", "ground", "time", "time-step", "seed"})
+        view[fact] = facts.at(fact);
     view["path"] = options.path ? Json(*options.path) : Json();
     view["motion"] = options.motion ? Json(*options.motion) : Json();
     view["hash"] = fmt::format("{:016x}", viewHash(session, plan));

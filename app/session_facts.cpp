@@ -42,8 +42,7 @@ void listFacts(Io& io, AnyOrigin& origin, AnySession& session, AnyShot& shot) {
         in.number("fov", camera.fovY, limits::fovY);
         in.demand(camera.eye != camera.target, "eye and target were expected to be two points");
     });
-    io.group("light", [&](Io& in) {
-        auto& light = session.light;
+    const auto lightFacts = [](Io& in, auto& light) {
         in.choice("shape", light.shape, lightShapeNames());
         in.vector("position", light.position, limits::coordinate);
         in.vector("target", light.target, limits::coordinate);
@@ -51,6 +50,11 @@ void listFacts(Io& io, AnyOrigin& origin, AnySession& session, AnyShot& shot) {
                   light.shape == LightShape::Directional ? limits::lightDegrees : limits::lightMetres);
         in.vector("colour", light.colour, limits::brightness);
         in.number("intensity", light.intensity, limits::brightness);
+    };
+    io.group("light", [&](Io& in) { lightFacts(in, session.light); });
+    io.list("further-lights", session.furtherLights, mostFurtherLights, [&](Io& in, auto& further) {
+        lightFacts(in, further.light);
+        in.flag("on", further.on);
     });
     io.flag("ground", session.ground);
     io.group("display", [&](Io& in) {
@@ -102,6 +106,15 @@ public:
         body(inner);
         json[key] = std::move(inner.json);
     }
+    template <class T, class Body>
+    void list(const char* key, const std::vector<T>& items, size_t /*most*/, Body&& body) {
+        json[key] = Json::array();
+        for (const T& item : items) {
+            Writer inner;
+            body(inner, item);
+            json[key].push_back(std::move(inner.json));
+        }
+    }
     void technique(const TechniqueShelf& techniques) {
         json["technique"] = techniques.card().id;
         json["parameters"] = parametersJson(techniques.parameters(), Which::All);
@@ -133,6 +146,20 @@ public:
         Reader inner(*json, place_ + key + ".");
         body(inner);
         inner.refuseUnknown();
+    }
+    template <class T, class Body> void list(const char* key, std::vector<T>& items, size_t most, Body&& body) {
+        const Json* json = find(key);
+        if (!json) return;
+        if (!json->is_array() || json->size() > most)
+            refuse(key, fmt::format("a list of at most {} objects", most), *json);
+        items.clear();
+        for (const Json& item : *json) {
+            const std::string place = fmt::format("{}{}[{}]", place_, key, items.size());
+            if (!item.is_object()) throw InputError(fmt::format("'{}': an object was expected", place));
+            Reader inner(item, place + ".");
+            body(inner, items.emplace_back());
+            inner.refuseUnknown();
+        }
     }
     void technique(TechniqueShelf& techniques) {
         const Json* id = find("technique");

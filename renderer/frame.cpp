@@ -107,46 +107,68 @@ Frame buildFrame(Flow& flow, const Session& session, const SceneState& state, co
     poseVertices(flow, state, geometry);
     const Surfaces surfaces = drawSurfaces(flow, view, state, geometry, lastView.clipFromWorld);
     const Shading shading{surfaces.colour, session.display.ambient, session.display.exposure};
-    const Inputs inputs{view,
-                        session.light,
-                        surfaces.buffer,
-                        geometry,
-                        state.poseVersion(),
-                        state.occluders(),
-                        session.frame,
-                        session.seed,
-                        session.progressive,
-                        margin,
-                        last,
-                        inspection,
-                        &shading};
     // Two techniques are instances a and b of one frame; what they need alike, such as the geometry buffer, is made
     // once.
     const bool lit = session.display.show == Show::Lit;
-    const auto build = [&](const TechniqueShelf& shelf, std::string_view instance) {
+    const auto build = [&](const TechniqueShelf& shelf, std::string_view instance, const AreaLight& light,
+                           const AreaLight* lastLight) {
+        const Inputs inputs{view,
+                            light,
+                            surfaces.buffer,
+                            geometry,
+                            state.poseVersion(),
+                            state.occluders(),
+                            session.frame,
+                            session.seed,
+                            session.progressive,
+                            margin,
+                            last,
+                            lastLight,
+                            inspection,
+                            &shading};
         shelf.parameters().refuseBeyondLimits();
         return shelf.technique().build(flow, {instance, shelf.card().id}, inputs);
     };
-    const Image shadow = build(session.techniques, two ? "a" : "");
-    std::optional<Image> rival, other; // what is compared with
-    if (two) rival = other = build(session.rival, "b");
+    // ψ of every light that shines, each an instance of its own; without the others where only shadows are shown.
+    const auto buildAll = [&](const TechniqueShelf& shelf, std::span<const std::string_view> instances) {
+        ShadowedLights all{{&session.light, build(shelf, instances[0], session.light, last ? &last->light : nullptr)}};
+        for (size_t i = 0; lit && i < session.furtherLights.size(); ++i) {
+            const auto& [light, on] = session.furtherLights[i];
+            const bool shone = last && i < last->furtherLights.size() && last->furtherLights[i].on;
+            if (on)
+                all.push_back(
+                    {&light, build(shelf, instances[1 + i], light, shone ? &last->furtherLights[i].light : nullptr)});
+        }
+        return all;
+    };
+    static constexpr std::string_view single[] = {"", "light-2", "light-3", "light-4"};
+    static constexpr std::string_view a[] = {"a", "a/light-2", "a/light-3", "a/light-4"};
+    static constexpr std::string_view b[] = {"b", "b/light-2", "b/light-3", "b/light-4"};
+    const ShadowedLights lights = buildAll(session.techniques, two ? a : single);
+    const Image shadow = lights[0].shadow;
+    ShadowedLights otherLights = lights; // what is compared with, where it is known
+    std::optional<Image> rival, other;
+    if (two) {
+        otherLights = buildAll(session.rival, b);
+        rival = other = otherLights[0].shadow;
+    }
     if (const TruthImage* known = session.currentTruth()) {
         const Image truth = supply(flow, *known, session.size);
-        if (comparison.against == Against::Truth) other = truth;
+        if (comparison.against == Against::Truth) other = otherLights[0].shadow = truth;
     }
 
-    const auto seen = [&](Image image, Scope scope) {
-        return lit ? shade(flow, scope, view, session.light, surfaces.buffer, shading, image) : image;
+    const auto seen = [&](const ShadowedLights& of, Scope scope) {
+        return lit ? shade(flow, scope, view, of, surfaces.buffer, shading) : of[0].shadow;
     };
     const auto display = [&] {
         const Scope own{.instance = two ? "a" : "", .owner = {}};
-        if (!other) return show(flow, session, seen(shadow, own));
+        if (!other) return show(flow, session, seen(lights, own));
         if (comparison.as == CompareAs::Error)
             return show(flow, session, subtract(flow, surfaces, shadow, *other, !two));
         const Scope others = two ? Scope{.instance = "b", .owner = {}} : truthScope;
         if (comparison.as == CompareAs::Flip)
-            return show(flow, session, comparison.exchanged ? seen(*other, others) : seen(shadow, own));
-        return show(flow, session, seen(shadow, own), seen(*other, others));
+            return show(flow, session, comparison.exchanged ? seen(otherLights, others) : seen(lights, own));
+        return show(flow, session, seen(lights, own), seen(otherLights, others));
     };
     return {shadow, rival, display(), surfaces.buffer.depth};
 }

@@ -2,6 +2,7 @@
 // What a technique is given for one light and one view.
 #pragma once
 
+#include "renderer/core/fixed_vector.h"
 #include "renderer/core/flow.h"
 #include "renderer/scene/camera.h"
 #include "renderer/scene/light.h"
@@ -32,6 +33,7 @@ struct Occluder {
 struct LastFrame {
     View view; // without a margin
     AreaLight light;
+    FixedVector<FurtherLight, mostFurtherLights> furtherLights = {};
 };
 
 // What somebody looks into besides the picture, which is the same whether or not.
@@ -57,9 +59,10 @@ struct Inputs {
     std::span<const Occluder> occluders;
     uint32_t frame; // index of the frame since the last reset, for sequences
     uint32_t seed;
-    bool progressive = false;        // the frame may show a part of the work; later ones do the rest
-    glm::ivec2 margin{0, 0};         // of the view [pixels]
-    const LastFrame* last = nullptr; // null: this is the first
+    bool progressive = false;             // the frame may show a part of the work; later ones do the rest
+    glm::ivec2 margin{0, 0};              // of the view [pixels]
+    const LastFrame* last = nullptr;      // null: this is the first
+    const AreaLight* lastLight = nullptr; // this light in the last frame; null: it did not shine
     Inspection inspection = {};
     const Shading* shading = nullptr; // how it is shown, if it is
 

@@ -121,6 +121,7 @@ void Renderer::begin(const Session& session, Timing timing, Turn turn) {
         throw;
     }
     last_ = {view_, session.light};
+    for (const FurtherLight& light : session.furtherLights) last_->furtherLights.push_back(light);
 }
 
 bool Renderer::advance(double milliseconds) {

@@ -76,6 +76,7 @@ void Session::setScene(OpenedScene opened) {
     scene = std::move(opened.scene);
     camera = opened.camera;
     light = opened.light;
+    furtherLights = std::move(opened.furtherLights);
     ground = opened.ground;
     clip = 0;
     time = 0;

@@ -40,7 +40,7 @@ struct DisplaySettings {
 class TechniqueShelf {
 public:
     explicit TechniqueShelf(std::string_view chosen = "pcss"); // soft shadows at once
-    void choose(std::string_view id); // throws InputError
+    void choose(std::string_view id);                          // throws InputError
     const Card& card() const;
     Technique& technique() const { return *techniques_[chosen_]; }
     ParameterSet& parameters() const { return technique().parameters(); }
@@ -62,6 +62,7 @@ struct OpenedScene {
     std::shared_ptr<const Scene> scene;
     Camera camera;
     AreaLight light;
+    std::vector<FurtherLight> furtherLights = {};
     bool ground;
     explicit OpenedScene(std::shared_ptr<const Scene> opened);
 };
@@ -107,7 +108,9 @@ struct TruthImage {
 struct Session {
     std::shared_ptr<const Scene> scene;
     Camera camera;
-    AreaLight light;
+    AreaLight light; // that is studied: ψ, the truth and errors are of it alone
+    // They light the picture too, with shadows of their own by the same technique; at most mostFurtherLights.
+    std::vector<FurtherLight> furtherLights;
     bool ground = false; // the extra plane below the scene
     TechniqueShelf techniques;
     DisplaySettings display;

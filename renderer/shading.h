@@ -6,13 +6,20 @@
 
 namespace penumbra {
 
-// A linear image "lit" of the size of `shadow`, the share of the light that is not seen.
-Image shade(Flow& flow, Scope scope, const View& view, const AreaLight& light, const GeometryBuffer& buffer,
-            const Shading& shading, Image shadow);
+// A light and ψ of it, the share that is not seen; all images of one size.
+struct Shadowed {
+    const AreaLight* light;
+    Image shadow;
+};
+using ShadowedLights = FixedVector<Shadowed, 1 + mostFurtherLights>;
+
+// A linear image "lit" of the size of the shadows.
+Image shade(Flow& flow, Scope scope, const View& view, const ShadowedLights& lights, const GeometryBuffer& buffer,
+            const Shading& shading);
 
 // An image "attenuation" of the size of the geometry buffer: by how much the brightest channel on the screen falls, in
-// [0, 1] of its range, when the whole light is hidden. Errors of ψ are seen so much smaller.
-Image drawAttenuation(Flow& flow, const View& view, const AreaLight& light, const GeometryBuffer& buffer,
-                      const Shading& shading);
+// [0, 1] of its range, when the whole light is hidden, were it the only one. Errors of ψ are seen so much smaller.
+Image drawAttenuation(Flow& flow, std::string_view instance, const View& view, const AreaLight& light,
+                      const GeometryBuffer& buffer, const Shading& shading);
 
 } // namespace penumbra

@@ -3,6 +3,10 @@
 
 #include "ui/numbers.h"
 
+#include <algorithm>
+#include <cmath>
+#include <optional>
+
 namespace penumbra {
 
 namespace {
@@ -44,6 +48,56 @@ void LightPanel::draw(Session& session, const SceneFacts& facts, ViewSettings& s
     tooltip("Draws the light in the view: drag its centre, its target or its edge (G; also while L is held)");
     if (ImGui::Button("Reset light")) light = defaultLight(*facts.scene, facts.pose);
     tooltip("Back to the scene's own light (L + Home in the view)");
+    furtherLights(session, facts);
+}
+
+// Numbered as their buffers are: light-2 is the first of them.
+void LightPanel::furtherLights(Session& session, const SceneFacts& facts) {
+    std::vector<FurtherLight>& lights = session.furtherLights;
+    if (!lights.empty()) subtitle("Further lights");
+    std::optional<size_t> removed;
+    for (size_t i = 0; i < lights.size(); ++i) {
+        ImGui::PushID(static_cast<int>(i));
+        auto& [light, on] = lights[i];
+        row(ShortText("light-{}", i + 2).begin());
+        ImGui::Checkbox("##on", &on);
+        tooltip("Whether it shines. Every light that shines has shadows, buffers and costs of its own.");
+        ImGui::SameLine();
+        if (ImGui::Button("Study")) std::swap(session.light, light);
+        tooltip("Makes it the light that the panel turns and that ψ, the truth and errors are of; the other takes its "
+                "place here.");
+        ImGui::SameLine();
+        if (ImGui::Button("Remove")) removed = i;
+        ImGui::PopID();
+    }
+    if (removed) lights.erase(lights.begin() + static_cast<std::ptrdiff_t>(*removed));
+    ImGui::BeginDisabled(lights.size() == mostFurtherLights);
+    if (ImGui::Button("Add a light")) lights.push_back({another(session, facts)});
+    ImGui::EndDisabled();
+    tooltip(
+        ShortText("The next of the scene's lights that does not shine yet, or one like this, half as bright, turned "
+                  "round its target; up to {} beside the first",
+                  mostFurtherLights)
+            .begin());
+}
+
+AreaLight LightPanel::another(const Session& session, const SceneFacts& facts) {
+    const auto shines = [&](const AreaLight& light) {
+        return light == session.light ||
+               std::any_of(session.furtherLights.begin(), session.furtherLights.end(),
+                           [&](const FurtherLight& further) { return further.light == light; });
+    };
+    for (const NamedLight& named : facts.scene->lights)
+        if (const AreaLight light = sceneLight(*facts.scene, facts.pose, named); !shines(light)) return light;
+    AreaLight light = session.light;
+    light.intensity *= furtherLightShare;
+    LightDirection direction = lightDirection(light);
+    direction.elevation = std::clamp(direction.elevation, -60.0f, 60.0f); // one overhead has nowhere to turn
+    do {
+        direction.azimuth = std::remainder(direction.azimuth + 100, 360.0f);
+        setLightDirection(light, direction);
+    } while (shines(light));
+    return light;
 }
 
 void LightPanel::ofScene(Session& session, const SceneFacts& facts) {

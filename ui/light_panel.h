@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// The area light: shape, size, place, direction, strength, the scene's own lights.
+// The area light that is studied: shape, size, place, direction, strength; the scene's own lights; and those that shine
+// beside it.
 #pragma once
 
 #include "ui/navigation.h"
@@ -17,6 +18,8 @@ public:
 private:
     void choose(Session& session, const SceneFacts& facts, size_t index);
     void ofScene(Session& session, const SceneFacts& facts);
+    void furtherLights(Session& session, const SceneFacts& facts);
+    static AreaLight another(const Session& session, const SceneFacts& facts);
     void shapeAndSize(AreaLight& light);
     void direction(AreaLight& light, float sceneSize);
 

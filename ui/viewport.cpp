@@ -313,6 +313,7 @@ void Viewport::fingerprint(const Session& session, const Renderer& renderer) {
     for (const Parameter* parameter : session.techniques.parameters().all()) now_.push_back(parameter->bits());
     append(now_, session.camera);
     append(now_, session.light);
+    for (const auto& [light, on] : session.furtherLights) append(now_, light), now_.push_back(on);
     append(now_, session.display);
     append(now_, session.clip);
     append(now_, session.time);

@@ -414,6 +414,7 @@ void Workspace::takeLoaded() {
     if (loading_.keepView) {
         loaded->opened.camera = session_.camera;
         loaded->opened.light = session_.light;
+        loaded->opened.furtherLights = session_.furtherLights;
         loaded->opened.ground = session_.ground;
     }
     session_.setScene(std::move(loaded->opened));

@@ -28,6 +28,15 @@ struct AreaLight {
     bool operator==(const AreaLight&) const = default;
 };
 
+// A light beside the one that is studied.
+struct FurtherLight {
+    AreaLight light;
+    bool on = true;
+    bool operator==(const FurtherLight&) const = default;
+};
+inline constexpr size_t mostFurtherLights = 3;
+inline constexpr float furtherLightShare = 0.5f; // of the first one's intensity, for a new light like it
+
 // Orthonormal; the light looks down −Z, its width is along X, which is horizontal. A light straight above or below has
 // its X along world X. A light that stands on its target looks down world −Y.
 glm::mat4 lightFromWorld(const AreaLight& light);

@@ -536,8 +536,8 @@ public:
         if (filters(parameters_)) {
             frame.asking = flow.tiles(scope, "asking", frame.shadow.extent);
             if (parameters_.filter.guided > 0 && inputs.shading)
-                frame.attenuation =
-                    drawAttenuation(flow, inputs.view, inputs.light, inputs.geometryBuffer, *inputs.shading);
+                frame.attenuation = drawAttenuation(flow, scope.instance, inputs.view, inputs.light,
+                                                    inputs.geometryBuffer, *inputs.shading);
         }
 
         const Flow::Outputs images = addSample(flow, scope, inputs, frame, most);
@@ -569,8 +569,8 @@ private:
                now.rayCorner == before.rayCorner && !lightChanged(inputs);
     }
     static bool lightChanged(const Inputs& inputs) {
-        if (!inputs.last) return false;
-        const AreaLight &now = inputs.light, &before = inputs.last->light;
+        if (!inputs.lastLight) return false;
+        const AreaLight &now = inputs.light, &before = *inputs.lastLight;
         return now.position != before.position || now.target != before.target || now.size != before.size;
     }
     // A light without a size needs no estimate of what its size does.

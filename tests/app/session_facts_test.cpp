@@ -42,12 +42,13 @@ public:
         s.comparison = {static_cast<Against>(whole(0, 2)), static_cast<CompareAs>(whole(0, 3)),
                         static_cast<float>(within({0, 1})), coin(), static_cast<float>(within({1, 100}))};
         s.camera = {point(), point(), point(), static_cast<float>(within(limits::fovY))};
-        s.light.shape = static_cast<LightShape>(whole(0, 2));
-        s.light.position = point();
-        s.light.target = point();
-        s.light.size = {within({0.01, 100}), within({0.01, 100})};
-        s.light.colour = glm::abs(point());
-        s.light.intensity = static_cast<float>(within({0, 10}));
+        const auto light = [&] {
+            return AreaLight{
+                static_cast<LightShape>(whole(0, 2)),       point(),           point(),
+                {within({0.01, 100}), within({0.01, 100})}, glm::abs(point()), static_cast<float>(within({0, 10}))};
+        };
+        s.light = light();
+        for (int i = whole(0, mostFurtherLights); i > 0; --i) s.furtherLights.push_back({light(), coin()});
         s.ground = coin();
         s.display = {coin() ? Show::Lit : Show::Shadow, static_cast<float>(within(limits::exposure)),
                      static_cast<float>(within(limits::ambient))};
@@ -82,6 +83,7 @@ TEST_CASE("every fact of a session comes back from a picture") {
         // Told apart from the writer: what decides the picture, to the last bit.
         CHECK(read.camera == written.camera);
         CHECK(read.light == written.light);
+        CHECK(read.furtherLights == written.furtherLights);
         CHECK(read.ground == written.ground);
         CHECK(read.display.show == written.display.show);
         CHECK(read.display.exposure == written.display.exposure);
