@@ -25,6 +25,7 @@ struct Occluder {
     Bounds boundsWorld;
     bool casts = true;
     bool closed = false;                     // a closed surface; see scene/closed_surface.h
+    bool shadesItself = true;                // see scene/closed_surface.h
     bool moved = false;                      // its pose differs from the last frame's
     std::span<const Bounds> partsWorld = {}; // that hold it more closely; empty: only boundsWorld does
 };

@@ -71,4 +71,23 @@ bool isClosedSurface(const Scene& scene, const Primitive& primitive) {
     return !edges.empty();
 }
 
+bool mayShadeItself(const Scene& scene, const Primitive& primitive) {
+    constexpr uint32_t most = 3 * 256; // corners
+    if (primitive.indexCount > most) return true;
+    const auto corner = [&](uint32_t i) {
+        return glm::dvec3(scene.positions[primitive.firstVertex + scene.indices[primitive.firstIndex + i]]);
+    };
+    const double slack = 1e-5 * double(primitive.bounds.diagonal());
+    for (uint32_t i = 0; i < primitive.indexCount; i += 3) {
+        const glm::dvec3 a = corner(i), across = glm::cross(corner(i + 1) - a, corner(i + 2) - a);
+        const double area = glm::length(across);
+        if (area == 0) continue;
+        for (uint32_t k = 0; k < primitive.indexCount; ++k) {
+            const double above = glm::dot(corner(k) - a, across) / area;
+            if (above > slack || (!primitive.closed && above < -slack)) return true;
+        }
+    }
+    return false;
+}
+
 } // namespace penumbra

@@ -10,4 +10,8 @@ namespace penumbra {
 // its bounds, the nearest surface of such a primitive always faces the viewer.
 bool isClosedSurface(const Scene& scene, const Primitive& primitive);
 
+// Whether a part of a primitive may stand between another part and a light that this one faces: not if it is flat, nor
+// if it is closed and convex, both to 1e-5 of its size. Large primitives are not looked into, and may.
+bool mayShadeItself(const Scene& scene, const Primitive& primitive);
+
 } // namespace penumbra

@@ -1126,6 +1126,7 @@ Scene imported(GltfFile file, const ImportChoice& choice, Progress* progress) {
         for (Primitive& primitive : scene.meshes[m].primitives) {
             if (primitive.influenceSets > 0 || primitive.morphTargets > 0) continue;
             primitive.closed = !scene.materials[size_t(primitive.material)].masked && isClosedSurface(scene, primitive);
+            primitive.shadesItself = mayShadeItself(scene, primitive);
             primitive.parts = partBounds(scene, primitive);
         }
     }

@@ -72,8 +72,9 @@ struct Primitive {
     uint32_t firstIndex = 0, indexCount = 0; // indices are relative to firstVertex
     uint32_t firstVertex = 0, vertexCount = 0;
     int material = 0;
-    bool closed = false; // a closed surface without holes in its material, see closed_surface.h
-    Bounds bounds;       // model space, without morph targets
+    bool closed = false;      // a closed surface without holes in its material, see closed_surface.h
+    bool shadesItself = true; // false: no light that it faces is hidden by another part of it
+    Bounds bounds;            // model space, without morph targets
     std::vector<Bounds>
         parts; // that hold it more closely, if it is rigid; see part_bounds.h. Empty: only `bounds` does
 

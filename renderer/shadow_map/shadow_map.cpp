@@ -13,6 +13,7 @@ namespace {
 using glm::vec3;
 
 constexpr float nearestShare = 1e-4f;  // the near plane is never nearer than this share of the far one
+constexpr size_t mostCompared = 64;    // boxes, each with each, for every map
 constexpr float widestTangent = 5.67f; // a perspective map opens to 80° on either side of the axis
 
 // An axis-aligned rectangle on the reference plane [m].
@@ -171,30 +172,52 @@ std::span<const Bounds> boxesOf(const Occluder& occluder) {
     return occluder.partsWorld.empty() ? std::span(&occluder.boundsWorld, 1) : occluder.partsWorld;
 }
 
-// `view`: of receivers, only what it shows counts, and of casters, what may stand before that.
+// Whether something that `shown` holds may be farther from the light than a thing in this box and behind it. What lies
+// upon another thing, to a ten thousandth of its depth, is not.
+bool shadesOthers(const Occluder& caster, const Corners& box, std::span<const Occluder> occluders,
+                  const std::optional<Region>& shown, const mat4& fromWorld, vec2 half, bool directional) {
+    for (const Occluder& other : occluders) {
+        if (&other == &caster) continue;
+        for (const Bounds& part : boxesOf(other)) {
+            const Corners corners = cornersOf(part, fromWorld);
+            Bounds seen;
+            for (const vec3& c : shown ? within(*shown, corners) : corners) seen.add(c);
+            if (seen.empty() || (!directional && seen.max.z <= 0)) continue;
+            seen.max.z -= 1e-4f * std::max(std::abs(seen.max.z), seen.max.z - seen.min.z);
+            if (within(before(seen, half, directional), box).count > 0) return true;
+        }
+    }
+    return false;
+}
+
+// `view`: of receivers, only what it shows counts, and of casters, what may stand before that. A floor that lies behind
+// everything, as seen from the light, takes no texels where nothing stands on it.
 MapFit fitMap(const AreaLight& light, std::span<const Occluder> occluders, const mat4& fromWorld, vec2 half,
               const View* view) {
     const bool directional = light.shape == LightShape::Directional;
+    size_t boxes = 0;
+    for (const Occluder& occluder : occluders) boxes += boxesOf(occluder).size();
+    const bool few = boxes <= mostCompared;
     const auto eachBox = [&](auto&& take) {
         for (const Occluder& occluder : occluders)
-            for (const Bounds& box : boxesOf(occluder)) take(cornersOf(box, fromWorld), occluder.casts);
+            for (const Bounds& box : boxesOf(occluder)) take(cornersOf(box, fromWorld), occluder);
     };
     const std::optional<Region> shown = view ? std::optional(shownBy(*view, fromWorld)) : std::nullopt;
     std::optional<Region> between;
     if (shown) {
         Bounds seen;
-        eachBox([&](const Corners& box, bool) {
+        eachBox([&](const Corners& box, const Occluder&) {
             for (const vec3& c : within(*shown, box)) seen.add(c);
         });
         if (!seen.empty() && (directional || seen.max.z > 0)) between = before(seen, half, directional);
     }
     float nearest = 1e30f, farthest = -1e30f, radius = 0;
-    eachBox([&](const Corners& box, bool casts) {
+    eachBox([&](const Corners& box, const Occluder& occluder) {
         for (const vec3& c : box) {
             farthest = std::max(farthest, c.z);
             radius = std::max(radius, glm::length(c));
         }
-        if (!casts) return;
+        if (!occluder.casts) return;
         for (const vec3& c : between ? within(*between, box) : box) nearest = std::min(nearest, c.z);
     });
     MapFit fit{0, 1, 1, {{-1, -1}, {1, 1}}};
@@ -212,8 +235,10 @@ MapFit fitMap(const AreaLight& light, std::span<const Occluder> occluders, const
         return std::any_of(corners.begin(), corners.end(), [&](vec3 c) { return directional || c.z >= fit.near; });
     };
     Window casters, receivers;
-    eachBox([&](const Corners& box, bool casts) {
-        if (casts && beyondNear(box)) {
+    eachBox([&](const Corners& box, const Occluder& occluder) {
+        const bool casts = occluder.casts && beyondNear(box);
+        if (casts && (occluder.shadesItself || !few ||
+                      shadesOthers(occluder, box, occluders, shown, fromWorld, half, directional))) {
             const Window window = project(box, fit, half, directional);
             casters.add(window.min), casters.add(window.max);
         }

@@ -62,3 +62,23 @@ TEST_CASE("a closed surface is one whose edges pair up and whose parts face outw
     sheet.face({0, 0, 0}, {0, 1, 0}, {1, 0, 0}); // both sides of a sheet: edges pair up, no volume
     CHECK_FALSE(sheet.closed());
 }
+
+TEST_CASE("flat things and convex closed ones do not shade themselves") {
+    Solid solid;
+    solid.tetrahedron({0, 0, 0});
+    solid.primitive.closed = true;
+    CHECK_FALSE(mayShadeItself(solid.scene, solid.primitive));
+    Solid hole = solid; // its inside is seen through
+    hole.primitive.indexCount -= 3;
+    hole.primitive.closed = false;
+    CHECK(mayShadeItself(hole.scene, hole.primitive));
+    solid.tetrahedron({3, 0, 0}); // each shades the other
+    CHECK(mayShadeItself(solid.scene, solid.primitive));
+    Solid sheet;
+    sheet.face({0, 0, 0}, {1, 0, 0}, {0, 1, 0});
+    sheet.face({1, 1, 0}, {0, 1, 0}, {1, 0, 0});
+    CHECK_FALSE(mayShadeItself(sheet.scene, sheet.primitive));
+    Solid bent = sheet;
+    bent.face({1, 1, 0}, {2, 1, 0.001f}, {1, 2, 0});
+    CHECK(mayShadeItself(bent.scene, bent.primitive));
+}

@@ -358,3 +358,26 @@ TEST_CASE("layers 5 cm apart do not fight a kilometre away") {
     CHECK(checked > 2000);
     CHECK(wrong == 0);
 }
+
+TEST_CASE("a floor that everything stands on takes no texels where nothing does") {
+    const AreaLight light{.position = {0, 4, 0}};
+    std::vector<Occluder> occluders{{.boundsWorld = {{-4, -0.1f, -4}, {4, 0, 4}}},
+                                    {.boundsWorld = {{-1, 0, -0.5f}, {-0.3f, 0.8f, 0.3f}}}};
+    const auto halfWidth = [&] { return lightView(light, occluders, {}).window.z; };
+    const float whole = halfWidth();
+    CHECK(whole > 4);
+    occluders[0].shadesItself = false;
+    const float fitted = halfWidth();
+    CHECK(fitted < 1);
+    CHECK(fitted > 0.35f); // the box itself
+    // Nor does it where the light slants, and the floor is nearer to it in one corner than the box in another.
+    const AreaLight slanting{.position = {6, 3, 0}};
+    const float wide = lightView(slanting, occluders, {}).window.z;
+    occluders[0].shadesItself = true;
+    CHECK(wide < 0.5f * lightView(slanting, occluders, {}).window.z);
+    occluders[0].shadesItself = false;
+    occluders.push_back({.boundsWorld = {{2, -1, 2}, {3, -0.5f, 3}}}); // in the floor's shadow
+    CHECK(halfWidth() > 4);
+    occluders.back().boundsWorld = {{2, 0.01f, 2}, {3, 0.5f, 3}}; // above it
+    CHECK(halfWidth() < 3);
+}
