@@ -34,10 +34,12 @@ constexpr int mostFrames = 4096; // that are accumulated; 256 samples each are w
 
 enum class Preparation { Flood, Separable, Published, None, NoneCorrected };
 enum class Noise { RandomStart, Interpolated, OneDimensional, Constants };
+enum class TwoStep { Off, Outer, Everywhere };
 enum class Listing { Corrected, Noise, EarlyOut, Sum, Distance, AsPrinted };
 enum class Distance { Fragment, Vertex, Axial };
 constexpr std::string_view preparationNames[] = {"flood", "separable", "published", "none", "none-corrected"};
 constexpr std::string_view noiseNames[] = {"random-start", "interpolated", "one-dimensional", "constants"};
+constexpr std::string_view twoStepNames[] = {"off", "outer", "everywhere"};
 constexpr std::string_view listingNames[] = {"corrected", "noise", "early-out", "sum", "distance", "as-printed"};
 constexpr std::string_view distanceNames[] = {"fragment", "vertex", "axial"};
 
@@ -128,14 +130,17 @@ struct Parameters : ParameterSet {
                                  "dimension: always the same row. Constants: the same points for every pixel, which "
                                  "shows steps instead of noise and reads no noise map.",
                          .choices = noiseNames}};
-    Flag twoStep{*this,
-                 {.id = "two-step",
-                  .label = "Two-step test",
-                  .value = 1,
-                  .programConstant = true,
-                  .source = "Valient, de Boer, figures 3 and 4",
-                  .help = "Leaves out samples whose own disk does not hold the receiver: thin things then throw no "
-                          "shadow on themselves."}};
+    Choice<TwoStep> twoStep{*this,
+                            {.id = "two-step",
+                             .label = "Two-step test",
+                             .value = double(TwoStep::Outer),
+                             .programConstant = true,
+                             .source = "Valient, de Boer, figures 3 and 4",
+                             .help = "Leaves out samples whose own disk does not hold the receiver: thin things then "
+                                     "throw no shadow on themselves. Outer: of receivers that the light's centre "
+                                     "lights, in the outer penumbra. Everywhere: of shadowed ones as well, which lets "
+                                     "light in behind what reaches down to them.",
+                             .choices = twoStepNames}};
     Flag objectIds{*this,
                    {.id = "object-ids",
                     .label = "Object numbers",
