@@ -105,6 +105,25 @@ Gltf thinSlab() {
     return std::move(s.gltf);
 }
 
+// Figure 4 of Valient and de Boer (2006). A long light, a thin board that it grazes, and a bar above it: disks of the
+// light's shape around what lies beside the bar's shadow go through the board, whose back then seems to hide the light.
+Gltf slantingSlab() {
+    Stage s(
+        "slanting-slab",
+        "A thin board that the light grazes, beside a bar's shadow: a filter that looks around each point takes the "
+        "board for its own shadow.",
+        6);
+    Shape board;
+    board.add(boxAround({0, 0, 0}, {1.6, 0.02, 1.6}), moved({0, 0.36, 0}) * turned(25, {0, 0, 1}));
+    s.gltf.object("board", board, s.grey);
+    Shape bar;
+    bar.add(boxAround({0, 0, 0}, {0.3, 0.01, 1.3}), moved({0.7, 1.16, -0.65}) * turned(-42, {0, 0, 1}));
+    s.gltf.object("bar", bar, s.red);
+    s.gltf.camera({.eye = {-0.6f, 2.5f, 2.5f}, .target = {0.15f, 0.4f, -0.15f}});
+    s.gltf.light({.position = {2.6f, 3.26f, 0}, .target = {0, 0.36f, 0}, .size = {0.08f, 0.9f}});
+    return std::move(s.gltf);
+}
+
 // Bars hang far above a screen whose shadow covers theirs. A filter of depths sees a spread that no single caster
 // explains (Chebyshev's bound: up to half of the light at the screen's foot) and draws the bars' edges in light.
 Gltf twoDepths() {

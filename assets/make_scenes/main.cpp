@@ -11,8 +11,9 @@ int main(int argc, char** argv) {
     try {
         const std::filesystem::path folder = argc > 1 ? argv[1] : "assets/scenes";
         std::filesystem::create_directories(folder);
-        for (const auto& make : {courtyard, overlappingOccluders, largePenumbra, contact, elongated, thinSlab,
-                                 twoDepths, overStairs, movingCaster, twoBoxes, halfPlane, rectangle, ball})
+        for (const auto& make :
+             {courtyard, overlappingOccluders, largePenumbra, contact, elongated, thinSlab, slantingSlab, twoDepths,
+              overStairs, movingCaster, twoBoxes, halfPlane, rectangle, ball})
             make().save(folder);
         return 0;
     } catch (const std::exception& error) {

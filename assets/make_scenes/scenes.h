@@ -14,6 +14,7 @@ Gltf largePenumbra();
 Gltf contact();
 Gltf elongated();
 Gltf thinSlab();
+Gltf slantingSlab();
 Gltf twoDepths();
 Gltf overStairs();
 Gltf movingCaster();

@@ -5,13 +5,13 @@
 //   1. shadow map of the faces turned away from the light (second depth), of the distance to the light's centre
 //   2. pre-processing: each texel of the map learns the depth of the nearest occluder and the inverse distance to the
 //      nearest hard boundary, up to a largest radius of n texels. As published: an edge filter and n passes of 3x3
-//      texels; or the same in two passes of 2 n + 1; or jump flooding (Rong and Tan 2006) in log2 n + 3
+//      texels; or the same in two passes of 2 n + 1; or jump flooding (Rong and Tan 2006) in log2 n + 2
 //   3. resolve: disk radius q = r d2 / d1 (eq. 1) from the pixel's own occluder or, where it is lit, the nearest one;
 //      pixels whose disk reaches no boundary are done; the others take f(q) = ⌈π q² / a⌉ samples (eq. 2) of the disk
 //
 // The disk is of the light's shape, so that a rectangular light has a rectangle; a directional light's radius is
-// d2 tan α. Exact for a light, an occluder and a receiver that are parallel. Memory: 4 bytes a texel of the map, and 48
-// to 56 with pre-processing; 2 reads of the map a pixel that is not filtered.
+// d2 tan α. Exact for a light, an occluder and a receiver that are parallel. Memory: 4 bytes a texel of the map, and 40
+// to 48 more with pre-processing; 2 reads of the map a pixel that is not filtered.
 #include "renderer/core/hash.h"
 #include "renderer/core/technique.h"
 #include "renderer/shadow_map/poisson_disk.h"
@@ -34,10 +34,12 @@ constexpr int mostFrames = 4096; // that are accumulated; 256 samples each are w
 
 enum class Preparation { Flood, Separable, Published, None, NoneCorrected };
 enum class Noise { RandomStart, Interpolated, OneDimensional, Constants };
+enum class TwoStep { Off, Outer, Everywhere };
 enum class Listing { Corrected, Noise, EarlyOut, Sum, Distance, AsPrinted };
 enum class Distance { Fragment, Vertex, Axial };
 constexpr std::string_view preparationNames[] = {"flood", "separable", "published", "none", "none-corrected"};
 constexpr std::string_view noiseNames[] = {"random-start", "interpolated", "one-dimensional", "constants"};
+constexpr std::string_view twoStepNames[] = {"off", "outer", "everywhere"};
 constexpr std::string_view listingNames[] = {"corrected", "noise", "early-out", "sum", "distance", "as-printed"};
 constexpr std::string_view distanceNames[] = {"fragment", "vertex", "axial"};
 
@@ -108,16 +110,17 @@ struct Parameters : ParameterSet {
          .help = "Samples of a disk, however large it is. Wide penumbrae show as many steps, or noise."}};
     Real samplesPerPixel{*this,
                          {.id = "samples-per-pixel",
-                          .label = "Samples per pixel",
+                          .label = "Limit per pixel",
                           .value = 0,
                           .min = 0,
                           .max = 4,
+                          .unit = Unit::Samples,
                           .scale = Scale::Logarithmic,
                           .smallest = 1e-3,
                           .source = "Valient, de Boer, Optimizations (fewer samples farther from the viewer)",
                           .help = "Disks that are far from the viewer take no more samples than this for each pixel of "
-                                  "their area on the screen, which falls with the square of the distance. 0: all of "
-                                  "eq. 2."}};
+                                  "their area on the screen, which falls with the square of the distance. 0: no "
+                                  "limit, all of eq. 2."}};
     Choice<Noise> noise{*this,
                         {.id = "noise",
                          .value = double(Noise::RandomStart),
@@ -128,14 +131,17 @@ struct Parameters : ParameterSet {
                                  "dimension: always the same row. Constants: the same points for every pixel, which "
                                  "shows steps instead of noise and reads no noise map.",
                          .choices = noiseNames}};
-    Flag twoStep{*this,
-                 {.id = "two-step",
-                  .label = "Two-step test",
-                  .value = 1,
-                  .programConstant = true,
-                  .source = "Valient, de Boer, figures 3 and 4",
-                  .help = "Leaves out samples whose own disk does not hold the receiver: thin things then throw no "
-                          "shadow on themselves."}};
+    Choice<TwoStep> twoStep{*this,
+                            {.id = "two-step",
+                             .label = "Two-step test",
+                             .value = double(TwoStep::Outer),
+                             .programConstant = true,
+                             .source = "Valient, de Boer, figures 3 and 4",
+                             .help = "Leaves out samples whose own disk does not hold the receiver: thin things then "
+                                     "throw no shadow on themselves. Outer: of receivers that the light's centre "
+                                     "lights, in the outer penumbra. Everywhere: of shadowed ones as well, which lets "
+                                     "light in behind what reaches down to them.",
+                             .choices = twoStepNames}};
     Flag objectIds{*this,
                    {.id = "object-ids",
                     .label = "Object numbers",
@@ -283,9 +289,8 @@ constexpr Channel preparedChannels[] = {
 constexpr Channel rowChannels[] = {
     {"occluder", "", "least depth along the row", Unit::DepthRange, 0, 1},
     {"distance", "", "to the nearest hard boundary of the row; 1000000: none within the largest radius", Unit::Texels}};
-constexpr Channel floodChannels[] = {
-    {"x", "", "centre of the nearest hard boundary's texel; 0: none yet", Unit::Texels},
-    {"y", "", "centre of the nearest hard boundary's texel; 0: none yet", Unit::Texels}};
+constexpr Channel floodChannels[] = {{"x", "Δx", "offset to the nearest hard boundary; 1024: none yet", Unit::Texels},
+                                     {"y", "Δy", "offset to the nearest hard boundary; 1024: none yet", Unit::Texels}};
 // A history as renderer/techniques/temporal.cpp keeps it, so that its filter can show it.
 constexpr Channel sampleChannels[] = {
     {"rho", "ρ", "samples of the disk that are hidden from the light's centre", Unit::Samples},
@@ -293,10 +298,12 @@ constexpr Channel sampleChannels[] = {
     {"depth", "d", "distance along the view axis; 0: no surface", Unit::Metres},
     {"blocker", "d_b", "depth of the occluder that the disk was sized for, along the light's axis; 0: not filtered",
      Unit::Metres}};
-constexpr Channel regionChannels[] = {
-    {"region", "", "0: no surface, 1: lit, 2: outer penumbra, 3: inner penumbra, 4: umbra or turned away", Unit::None,
-     0, 4},
-    {"samples", "N", "samples of the disk; 0: not filtered", Unit::Samples}};
+constexpr std::string_view regionNames[] = {"no surface", "lit", "outer penumbra", "inner penumbra",
+                                            "umbra or turned away"};
+constexpr Channel regionChannels[] = {{"region", "",
+                                       "which of the paper's regions a pixel is in; only penumbrae are filtered",
+                                       Unit::None, 0, 4, regionNames},
+                                      {"samples", "N", "samples of the disk; 0: not filtered", Unit::Samples}};
 
 struct JumpConstants {
     ivec4 jump; // x = how far the neighbours are [texels]
@@ -460,42 +467,47 @@ private:
     // The map with what its texels know of their surroundings.
     Image prepare(Flow& flow, Scope scope, const ShadowMap& map) const {
         const Extent extent = flow.spec(map.depth).extent;
-        const ImageSpec prepared{"prepared", Format::RGBA32F, extent, preparedChannels};
-        const auto pass = [&](std::string_view name, std::string_view shader, Defines defines, PassReads reads,
-                              const ImageSpec& writes, const Constants& constants = {}) {
-            return Image(flow.pass(scope, {.stage = Stage::Prefilter,
-                                           .name = name,
-                                           .work = Compute{shader, defines},
-                                           .reads = reads,
-                                           .writes = {writes},
-                                           .constants = constants,
-                                           .parameters = &parameters_}));
+        const auto pass = [&](std::string_view name, std::string_view shader, Defines defines, const PassReads& reads,
+                              decltype(PassSpec::writes) writes, const Constants& constants = {}) {
+            return flow.pass(scope, {.stage = Stage::Prefilter,
+                                     .name = name,
+                                     .work = Compute{shader, defines},
+                                     .reads = reads,
+                                     .writes = writes,
+                                     .constants = constants,
+                                     .parameters = &parameters_});
         };
-        const Image edges = pass("edges", "techniques/fractional_disk_edges.glsl", {}, {{"shadowMap", map.depth}},
-                                 {"edges", Format::RGBA32F, extent, edgeChannels});
+        const ImageSpec prepared{"prepared", Format::RGBA32F, extent, preparedChannels};
+        const ImageSpec flood{"flood", Format::RG16F, extent, floodChannels}; // whole numbers below 2048 are exact
+        const bool floods = parameters_.preparation == Preparation::Flood;
+        decltype(PassSpec::writes) found{{"edges", Format::RGBA32F, extent, edgeChannels}};
+        Defines finds;
+        if (floods) found.push_back(flood), finds.push_back({"SEEDS"});
+        const Flow::Outputs first =
+            pass("edges", "techniques/fractional_disk_edges.glsl", finds, {{"shadowMap", map.depth}}, found);
+        const Image edges = first[0];
         const int radius = parameters_.maxRadius;
-        Image image = edges;
         if (parameters_.preparation == Preparation::Published) {
+            Image image = edges;
             flow.repeat(radius, [&](int) {
-                image = pass("spread", "techniques/fractional_disk_spread.glsl", {}, {{"before", image}}, prepared);
+                image = pass("spread", "techniques/fractional_disk_spread.glsl", {}, {{"before", image}}, {prepared});
             });
             return image;
         }
         if (parameters_.preparation == Preparation::Separable) {
             static constexpr std::string_view shader = "techniques/fractional_disk_separable.glsl";
             const Image rows =
-                pass("rows", shader, {{"ROWS"}}, {{"edges", edges}}, {"rows", Format::RG32F, extent, rowChannels});
-            return pass("columns", shader, {}, {{"edges", edges}, {"rows", rows}}, prepared);
+                pass("rows", shader, {{"ROWS"}}, {{"edges", edges}}, {{"rows", Format::RG32F, extent, rowChannels}});
+            return pass("columns", shader, {}, {{"edges", edges}, {"rows", rows}}, {prepared});
         }
         static constexpr std::string_view shader = "techniques/fractional_disk_flood.glsl";
         const int rounds = std::bit_width(static_cast<unsigned>(radius - 1)); // the jumps reach 2^rounds texels
+        Image image = first[1];
         flow.repeat(std::max(rounds, 1), [&](int i) {
             const JumpConstants constants{ivec4(1 << std::max(rounds - 1 - i, 0), 0, 0, 0)};
-            const ImageSpec flood{"flood", Format::RG32F, extent, floodChannels};
-            image = i == 0 ? pass("flood", shader, {{"FIRST"}}, {{"edges", edges}}, flood, constants)
-                           : pass("flood", shader, {}, {{"before", image}}, flood, constants);
+            image = pass("flood", shader, {}, {{"before", image}}, {flood}, constants);
         });
-        return pass("flood-last", shader, {{"LAST"}}, {{"edges", edges}, {"before", image}}, prepared,
+        return pass("flood-last", shader, {{"LAST"}}, {{"edges", edges}, {"before", image}}, {prepared},
                     JumpConstants{ivec4(1, 0, 0, 0)});
     }
 

@@ -28,6 +28,9 @@ float inverseDistance(float d, float n)
     return d <= n ? n + 1.0f - d : 0.0f;
 }
 
+// What jump flooding keeps of a texel that knows of no edge yet: an offset beyond any that it finds.
+const float floodUnknown = 1024.0f;
+
 // Whether a hard boundary lies within `radius` texels, at most n, of a texel of that inverse distance.
 bool nearBoundary(float inverse, float n, float radius)
 {

@@ -90,6 +90,7 @@ struct Disk {
     vec2 fromSample;     // the receiver's place on the reference plane, from the light's point, over its depth
     float slopePerTexel; // what that grows by from texel to texel
     float object;        // its number
+    bool twoStep;        // whether samples pass the two-step test
 };
 
 Disk makeDisk(Receiver r, Lookup l)
@@ -102,6 +103,7 @@ Disk makeDisk(Receiver r, Lookup l)
     disk.texelsPerMetre = texelsOfReference * (directional ? 1.0 : f / r.d);
     disk.halfLight = lightScale * lightView.light.xy;
     disk.fromSample = (r.reference - lightView.sample_reference.xy) / f;
+    disk.twoStep = true;
     disk.slopePerTexel = 1.0 / (texelsOfReference * f);
 #if OBJECT_IDS
     disk.object = texelFetch(receiving, surfaceTexel(r.pixel), 0).x;
@@ -150,8 +152,9 @@ float occluderAt(Disk disk, vec2 texel, vec2 offset)
     float z = storedDepth(corner);
     float d = occluderDepth(disk, z, corner + 0.5 - texel);
     bool occludes = z < 1.0 && d + disk.bias < disk.depth && ofAnother(disk, corner);
-#if TWO_STEP
-    occludes = occludes && withinOwnDisk(offset, disk.halfLight, distanceToLight(d), disk.depth - d, disk.texelsPerMetre, roundLight);
+#if TWO_STEP != TWO_STEP_OFF
+    bool holds = withinOwnDisk(offset, disk.halfLight, distanceToLight(d), disk.depth - d, disk.texelsPerMetre, roundLight);
+    occludes = occludes && (holds || !disk.twoStep);
 #endif
     return occludes ? d : disk.depth;
 }
@@ -177,6 +180,9 @@ void main()
     bool hard = own.x < 1.0 && blocks(l, own.x, vec2(0.0)) > 0.0;
 #endif
     hard = hard && ofAnother(disk, corner);
+#if TWO_STEP == TWO_STEP_OUTER
+    disk.twoStep = !hard;
+#endif
     ivec2 start = firstSample(r.pixel);
 
     // The disk's half size, from the receiver's own occluder or, where it is lit, from the nearest.

@@ -3,9 +3,13 @@
 // more than a threshold from its left to its right or its lower to its upper neighbour; slopes do not bend. 9 texture
 // reads a texel.
 #include "band.glsl"
+#include "lib/fractional_disk.glsl"
 
 uniform sampler2D shadowMap;
 uniform writeonly image2D edges; // depth, least depth of the neighbourhood, 1 on an edge; elsewhere depth, 1, 0
+#ifdef SEEDS
+uniform writeonly image2D flood; // as jump flooding starts
+#endif
 
 float at(ivec2 texel) { return texelFetch(shadowMap, clamp(texel, ivec2(0), textureSize(shadowMap, 0) - 1), 0).x; }
 
@@ -19,5 +23,9 @@ void main()
     bool edge = max(bend.x, bend.y) > edgeThreshold;
     vec4 less = min(cross, corners);
     float least = min(centre, min(min(less.x, less.y), min(less.z, less.w)));
-    imageStore(edges, t, edge && least < 1.0 ? vec4(centre, least, 1.0, 0.0) : vec4(centre, 1.0, 0.0, 0.0));
+    bool found = edge && least < 1.0;
+    imageStore(edges, t, found ? vec4(centre, least, 1.0, 0.0) : vec4(centre, 1.0, 0.0, 0.0));
+#ifdef SEEDS
+    imageStore(flood, t, vec4(found ? 0.0 : floodUnknown));
+#endif
 }

@@ -6,45 +6,33 @@
 
 layout(std140, binding = 0) uniform Constants { ivec4 jump; };
 
-uniform sampler2D edges;
-#ifndef FIRST
 uniform sampler2D before;
-#endif
 #ifdef LAST
+uniform sampler2D edges;
 uniform writeonly image2D prepared;
 #else
-uniform writeonly image2D flood; // centre of the nearest edge texel [texels]; 0: none yet
+uniform writeonly image2D flood; // offset to the nearest edge texel [texels]; floodUnknown: none yet
 #endif
-
-// What a texel knows; outside the map it is 0, nothing.
-vec2 known(ivec2 texel)
-{
-#ifdef FIRST
-    return texelFetch(edges, texel, 0).z > 0.0 ? vec2(texel) + 0.5 : vec2(0.0);
-#else
-    return texelFetch(before, texel, 0).xy;
-#endif
-}
 
 void main()
 {
     ivec2 t = texelHere().xy;
-    vec2 here = vec2(t) + 0.5;
-    vec2 nearest = vec2(0.0);
-    float least = 1e12;
+    ivec2 last = textureSize(before, 0) - 1;
+    vec2 nearest = vec2(floodUnknown);
+    float least = floodUnknown * floodUnknown;
     for (int y = -1; y <= 1; ++y)
         for (int x = -1; x <= 1; ++x) {
-            vec2 seed = known(t + jump.x * ivec2(x, y));
-            vec2 to = seed - here;
-            float d2 = seed.x > 0.0 ? dot(to, to) : 1e12;
-            nearest = d2 < least ? seed : nearest;
+            ivec2 from = clamp(t + jump.x * ivec2(x, y), ivec2(0), last);
+            vec2 known = texelFetch(before, from, 0).xy;
+            vec2 to = known + vec2(from - t);
+            float d2 = known.x < floodUnknown ? dot(to, to) : least;
+            nearest = d2 < least ? to : nearest;
             least = min(d2, least);
         }
 #ifdef LAST
     float own = texelFetch(edges, t, 0).x;
-    float n = float(maxRadius);
-    float inverse = inverseDistance(sqrt(least), n);
-    float depth = texelFetch(edges, ivec2(nearest), 0).y;
+    float inverse = inverseDistance(sqrt(least), float(maxRadius));
+    float depth = texelFetch(edges, t + ivec2(inverse > 0.0 ? nearest : vec2(0.0)), 0).y;
     imageStore(prepared, t, vec4(own, inverse > 0.0 ? depth : 1.0, inverse, 0.0));
 #else
     imageStore(flood, t, vec4(nearest, 0.0, 0.0));

@@ -47,7 +47,7 @@ TEST_CASE("make-scenes writes the built-in scenes as they are stored") {
 }
 
 TEST_CASE("every built-in scene has a camera, a light with a size, a floor and nothing to note") {
-    CHECK(builtInFiles().size() == 13);
+    CHECK(builtInFiles().size() == 14);
     for (const fs::path& file : builtInFiles()) {
         CAPTURE(file.filename().string());
         const Scene scene = importGltf(file);
