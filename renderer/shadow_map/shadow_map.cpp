@@ -172,19 +172,33 @@ std::span<const Bounds> boxesOf(const Occluder& occluder) {
     return occluder.partsWorld.empty() ? std::span(&occluder.boundsWorld, 1) : occluder.partsWorld;
 }
 
-// Whether something that `shown` holds may be farther from the light than a thing in this box and behind it. What lies
-// upon another thing, to a ten thousandth of its depth, is not.
-bool shadesOthers(const Occluder& caster, const Corners& box, std::span<const Occluder> occluders,
-                  const std::optional<Region>& shown, const mat4& fromWorld, vec2 half, bool directional) {
+// Where the points of the light are: a box around them in the world or, if it is directional, of directions to them.
+Bounds lightBounds(const AreaLight& light) {
+    const mat4 worldFromLight = glm::inverse(lightFromWorld(light));
+    const vec2 half = halfSize(light);
+    Bounds bounds;
+    for (const vec2 side : {vec2(-1, -1), vec2(1, -1), vec2(-1, 1), vec2(1, 1)})
+        bounds.add(light.shape == LightShape::Directional ? vec3(worldFromLight * vec4(half * side, 1, 0))
+                                                          : vec3(worldFromLight * vec4(half * side, 0, 1)));
+    return bounds;
+}
+
+// Whether something that is shown may lie behind a thing in this box. It does not if a face of the box has both it and
+// the light before it.
+bool shadesOthers(const Occluder& caster, const Bounds& box, std::span<const Occluder> occluders,
+                  const std::optional<Region>& shown, const mat4& fromWorld, const Bounds& points, bool directional) {
+    const float slack = 1e-5f * box.diagonal();
+    const auto before = [&](const Bounds& other, int axis) {
+        const float low = box.min[axis] + slack, high = box.max[axis] - slack;
+        const bool above = points.min[axis] >= (directional ? 0 : high),
+                   below = points.max[axis] <= (directional ? 0 : low);
+        return (above && other.min[axis] >= high) || (below && other.max[axis] <= low);
+    };
     for (const Occluder& other : occluders) {
         if (&other == &caster) continue;
         for (const Bounds& part : boxesOf(other)) {
-            const Corners corners = cornersOf(part, fromWorld);
-            Bounds seen;
-            for (const vec3& c : shown ? within(*shown, corners) : corners) seen.add(c);
-            if (seen.empty() || (!directional && seen.max.z <= 0)) continue;
-            seen.max.z -= 1e-4f * std::max(std::abs(seen.max.z), seen.max.z - seen.min.z);
-            if (within(before(seen, half, directional), box).count > 0) return true;
+            if (before(part, 0) || before(part, 1) || before(part, 2)) continue;
+            if (!shown || within(*shown, cornersOf(part, fromWorld)).count > 0) return true;
         }
     }
     return false;
@@ -200,19 +214,19 @@ MapFit fitMap(const AreaLight& light, std::span<const Occluder> occluders, const
     const bool few = boxes <= mostCompared;
     const auto eachBox = [&](auto&& take) {
         for (const Occluder& occluder : occluders)
-            for (const Bounds& box : boxesOf(occluder)) take(cornersOf(box, fromWorld), occluder);
+            for (const Bounds& box : boxesOf(occluder)) take(cornersOf(box, fromWorld), occluder, box);
     };
     const std::optional<Region> shown = view ? std::optional(shownBy(*view, fromWorld)) : std::nullopt;
     std::optional<Region> between;
     if (shown) {
         Bounds seen;
-        eachBox([&](const Corners& box, const Occluder&) {
+        eachBox([&](const Corners& box, const Occluder&, const Bounds&) {
             for (const vec3& c : within(*shown, box)) seen.add(c);
         });
         if (!seen.empty() && (directional || seen.max.z > 0)) between = before(seen, half, directional);
     }
     float nearest = 1e30f, farthest = -1e30f, radius = 0;
-    eachBox([&](const Corners& box, const Occluder& occluder) {
+    eachBox([&](const Corners& box, const Occluder& occluder, const Bounds&) {
         for (const vec3& c : box) {
             farthest = std::max(farthest, c.z);
             radius = std::max(radius, glm::length(c));
@@ -235,10 +249,11 @@ MapFit fitMap(const AreaLight& light, std::span<const Occluder> occluders, const
         return std::any_of(corners.begin(), corners.end(), [&](vec3 c) { return directional || c.z >= fit.near; });
     };
     Window casters, receivers;
-    eachBox([&](const Corners& box, const Occluder& occluder) {
+    const Bounds points = lightBounds(light);
+    eachBox([&](const Corners& box, const Occluder& occluder, const Bounds& boxWorld) {
         const bool casts = occluder.casts && beyondNear(box);
         if (casts && (occluder.shadesItself || !few ||
-                      shadesOthers(occluder, box, occluders, shown, fromWorld, half, directional))) {
+                      shadesOthers(occluder, boxWorld, occluders, shown, fromWorld, points, directional))) {
             const Window window = project(box, fit, half, directional);
             casters.add(window.min), casters.add(window.max);
         }
