@@ -37,30 +37,33 @@ Columns columnsBelow(int left, int right, int y)
 }
 
 // Differences of whole numbers are exact; only then are they weighed by the share of a column that lies within.
-vec4 sumOf(Columns above, Columns below, vec2 share)
+vec4 sumOf(Columns above, Columns under, vec2 share)
 {
-    return vec4(above.between - below.between) + share.y * vec4(above.right - below.right) -
-           share.x * vec4(above.left - below.left);
+    return vec4(above.between - under.between) + share.y * vec4(above.right - under.right) -
+           share.x * vec4(above.left - under.left);
 }
 
-// The moments over a box [texels], whose edges may cut texels. Outside the map nothing casts.
-vec4 momentsIn(vec2 low, vec2 high)
+// All between two columns of edges and below an edge that cuts a row of texels.
+struct Below {
+    Columns rows;
+    vec4 part; // of the row that is cut
+};
+Below below(vec2 x, float y)
 {
-    vec2 size = vec2(lightView.light.z);
-    vec2 from = clamp(low, vec2(0.0), size);
-    vec2 to = clamp(high, vec2(0.0), size);
-    ivec2 a = ivec2(from);
-    ivec2 b = ivec2(to);
-    vec2 cutA = from - vec2(a);
-    vec2 cutB = to - vec2(b);
-    vec2 x = vec2(cutA.x, cutB.x);
-    Columns y0 = columnsBelow(a.x, b.x, a.y), y1 = columnsBelow(a.x, b.x, a.y + 1);
-    Columns y2 = columnsBelow(a.x, b.x, b.y), y3 = columnsBelow(a.x, b.x, b.y + 1);
-    vec4 sum = sumOf(y2, y0, x) + cutB.y * sumOf(y3, y2, x) - cutA.y * sumOf(y1, y0, x);
-    vec2 within = to - from;
-    float texels = max(within.x * within.y, 1e-6);
-    float share = within.x * within.y / ((high.x - low.x) * (high.y - low.y));
-    return mix(lookup.empty, lookup.momentsFromSum * (sum / texels) + lookup.momentsOffset, share);
+    ivec3 edge = ivec3(x, y);
+    vec2 share = x - vec2(edge.xy);
+    Columns rows = columnsBelow(edge.x, edge.y, edge.z);
+    return Below(rows, (y - float(edge.z)) * sumOf(columnsBelow(edge.x, edge.y, edge.z + 1), rows, share));
+}
+
+// The moments over a box, whose edges may cut texels, from what lies below its two ends; outside the map nothing casts. `area`
+// is the box's, and what lies within the map may be less [texels].
+vec4 momentsBetween(Below top, Below bottom, vec2 x, float height, float area)
+{
+    vec4 sum = sumOf(top.rows, bottom.rows, x - floor(x)) + top.part - bottom.part;
+    float within = (x.y - x.x) * height;
+    vec4 moments = lookup.momentsFromSum * (sum / max(within, 1e-6)) + lookup.momentsOffset;
+    return mix(lookup.empty, moments, within / area);
 }
 
 // The receiver's plane at an offset of δ texels, in map depth; in front of it a stored depth blocks (blocks() of
@@ -71,21 +74,29 @@ float planeDepthAt(Lookup l, vec2 delta)
     return (directional ? l.compared + min(change, l.farthest) : l.compared / (1.0 + max(change, l.farthest))) - l.offset;
 }
 
-// Of a window around the receiver's place, n by n cells.
+// Of a window around the receiver's place, n by n cells, column by column: 8 (n + 1) n texture reads.
 InFront inFrontWithin(Lookup l, vec2 halfSize, int n)
 {
     vec2 cell = 2.0 * halfSize / float(max(n, 1));
+    float size = lightView.light.z;
     // A plane's depths within a cell, as a standard deviation.
     float deviation = length(l.gradient * cell) * 0.28867513 * (directional ? 1.0 : l.compared);
     InFront sum = InFront(0.0, 0.0);
-    for (int i = 0; i < n * n; ++i) {
-        vec2 delta = (vec2(i % n, i / n) + 0.5) * cell - halfSize;
-        float z = planeDepthAt(l, delta) - planeBias * deviation;
-        vec2 middle = l.texel + delta;
-        InFront f = blockingIn(momentsIn(middle - 0.5 * cell, middle + 0.5 * cell),
-                              fma(z, lookup.depth.x, lookup.depth.y));
-        sum.psi += f.psi;
-        sum.moment += f.moment;
+    for (int i = 0; i < n; ++i) {
+        vec2 x = clamp(l.texel.x - halfSize.x + vec2(i, i + 1) * cell.x, 0.0, size);
+        float y = clamp(l.texel.y - halfSize.y, 0.0, size);
+        Below bottom = below(x, y);
+        for (int j = 0; j < n; ++j) {
+            float upper = clamp(l.texel.y - halfSize.y + float(j + 1) * cell.y, 0.0, size);
+            Below top = below(x, upper);
+            float z = planeDepthAt(l, (vec2(i, j) + 0.5) * cell - halfSize) - planeBias * deviation;
+            InFront f = blockingIn(momentsBetween(top, bottom, x, upper - y, cell.x * cell.y),
+                                   fma(z, lookup.depth.x, lookup.depth.y));
+            sum.psi += f.psi;
+            sum.moment += f.moment;
+            bottom = top;
+            y = upper;
+        }
     }
     float share = 1.0 / float(max(n * n, 1));
     return InFront(sum.psi * share, sum.moment * share);

@@ -12,17 +12,17 @@ static_assert(sizeof(SummedAreaBlock) == 96 && sizeof(SummedAreaLookupBlock) == 
 
 // Of techniques that look at windows of such a table; see shaders/soft_moments.glsl.
 struct SoftMomentParameters : ParameterGroup {
-    explicit SoftMomentParameters(ParameterSet& s, double usualPlaneBias)
+    explicit SoftMomentParameters(ParameterSet& s)
         : ParameterGroup(s, "Windows")
         , cells{set,
                 {.id = "cells",
                  .symbol = "n",
-                 .value = 3,
+                 .value = 4,
                  .min = 1,
                  .max = 8,
                  .source = "Yang et al. 2010 (subdivided kernels)",
                  .help = "Search and filter look at n by n cells of a window. More of them leak less light, and leave "
-                         "contacts and slopes less blurred; each is 16 texture reads."}}
+                         "contacts and slopes less blurred; each is 8 texture reads and more."}}
         , widest{set,
                  {.id = "widest-window",
                   .label = "Widest window",
@@ -45,7 +45,7 @@ struct SoftMomentParameters : ParameterGroup {
         , planeBias{set,
                     {.id = "plane-bias",
                      .label = "Plane bias",
-                     .value = usualPlaneBias,
+                     .value = 0,
                      .min = 0,
                      .max = 2,
                      .help = "Moves the receiver towards the light by so many standard deviations of its plane's depth "
@@ -58,7 +58,10 @@ struct SoftMomentParameters : ParameterGroup {
     double levels() const { return levelsOf(set); }
     static double levelsOf(const ParameterSet& set);
 
-    TextureReads reads() const { return {16 * cells * cells, 32 * cells * cells}; }
+    TextureReads reads() const {
+        const int window = 8 * cells * (cells + 1);
+        return {window, 2 * window};
+    }
 };
 
 // The first two or four powers of depths in [−1, 1]; from one map texel 8 or 16 bytes in either of two tables, and 1/16

@@ -11,10 +11,10 @@ namespace {
 
 struct Parameters : ParameterSet {
     ShadowMapParameters map{*this, {.fit = Fit::View, .largest = largestMomentMap}};
-    SoftMomentParameters windows{*this, 0.5};
+    SoftMomentParameters windows{*this};
     MomentBias momentBias{*this, [](const ParameterSet& set) {
-                              // That of 16 bits, by the number of steps.
-                              return std::clamp(6e-5 * 65535 / SoftMomentParameters::levelsOf(set), 3e-7, 1e-2);
+                              // By the number of steps; sums over many texels have little of their rounding left.
+                              return std::clamp(0.07 / SoftMomentParameters::levelsOf(set), 3e-7, 1e-2);
                           }};
     BiasParameters bias{*this, {.slope = 0.05, .normalOffset = 0.25}};
 };

@@ -11,7 +11,7 @@ namespace {
 
 struct Parameters : ParameterSet {
     ShadowMapParameters map{*this, {.fit = Fit::View, .largest = largestMomentMap}};
-    SoftMomentParameters windows{*this, 0};
+    SoftMomentParameters windows{*this};
     MinimumVariance minimumVariance{
         *this, [](const ParameterSet& set) { return std::max(0.25 / SoftMomentParameters::levelsOf(set), 1e-7); }};
     BiasParameters bias{*this, {.slope = 0.05, .normalOffset = 0.25}};

@@ -500,9 +500,6 @@ TEST_CASE("what lies in front of a fragment is told with its mean depth where fe
         check(f64::hamburgerInFront(b, z[2], exact), two / three, (w[0] * z[0] + w[1] * z[1]) / three, 1e-6);
         check(f64::hamburgerInFront(b, z[1], exact), w[0] / three, w[0] * z[0] / three, 1e-6);
         check(f64::hamburgerInFront(b, z[0], exact), 0, 0, 1e-6);
-        const f32::InFront narrow = f32::hamburgerInFront(glm::vec4(b), float(z[2]), rangeOf(3e-5));
-        check(narrow, f64::hamburgerInFront(biased(b, 3e-5), z[2], exact).psi,
-              f64::hamburgerInFront(biased(b, 3e-5), z[2], exact).moment, 0.05);
     }
     // Variance soft shadow mapping: z_occ = (z_avg − P t) / (1 − P); half of a window at 0.3, a quarter, two blockers,
     // a receiver whose fragment is biased.
