@@ -29,7 +29,13 @@ uniform writeonly Target moments;
 #endif
 
 #ifdef FROM_DEPTH
+#ifdef SAMPLES
+uniform sampler2DMS source;
+ivec2 sourceSize() { return textureSize(source); }
+#else
 uniform sampler2D source;
+ivec2 sourceSize() { return textureSize(source, 0); }
+#endif
 
 vec4 functionsOf(float z, int layer)
 {
@@ -52,7 +58,16 @@ vec4 functionsOf(float z, int layer)
 #endif
 }
 
-vec4 valueAt(ivec2 place, int layer) { return functionsOf(texelFetch(source, place, 0).x, layer); }
+vec4 valueAt(ivec2 place, int layer)
+{
+#ifdef SAMPLES
+    vec4 sum = vec4(0.0);
+    for (int i = 0; i < SAMPLES; ++i) sum += functionsOf(texelFetch(source, place, i).x, layer);
+    return sum / float(SAMPLES);
+#else
+    return functionsOf(texelFetch(source, place, 0).x, layer);
+#endif
+}
 vec4 stored(vec4 value)
 {
 #ifdef ENCODED
@@ -69,6 +84,7 @@ vec4 valueAt(ivec2 place, int layer) { return texelFetch(source, ivec3(place, la
 uniform sampler2D source;
 vec4 valueAt(ivec2 place, int layer) { return texelFetch(source, place, 0); }
 #endif
+ivec2 sourceSize() { return textureSize(source, 0).xy; }
 vec4 stored(vec4 value) { return value; }
 #endif
 
@@ -96,7 +112,7 @@ void main()
     const ivec2 along = ivec2(0, 1);
     ivec2 first = texel.xy - inGroup + ivec2(i & 7, 4 * (i >> 3));
 #endif
-    ivec2 last = textureSize(source, 0).xy - 1;
+    ivec2 last = sourceSize() - 1;
     int half_n = filtering.kernel.x;
     int rounds = i < 16 ? 1 : 0; // a loop: software renderers run both sides of a branch
     for (int round_ = 0; round_ < rounds; ++round_) {

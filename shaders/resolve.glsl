@@ -52,10 +52,10 @@ bool lightBelowHorizon(vec3 positionLight, vec3 n)
 // The pixel's receiver, moved along its normal by `normalOffset` texels. ψ is known to be 0 without a surface and behind
 // the light, 1 with the light below the horizon. There are no early returns here: a software renderer runs both sides of
 // every branch, and only loops of no rounds save it work. Fetches and stores outside the picture do nothing.
-Receiver findReceiver(float normalOffset)
+Receiver findReceiverOf(ivec2 pixel, float normalOffset)
 {
     Receiver r;
-    r.pixel = texelHere().xy;
+    r.pixel = pixel;
     ivec2 texel = surfaceTexel(r.pixel);
     r.eyeDepth = texelFetch(depth, texel, 0).x;
     vec2 centre = vec2(texel) + 0.5;
@@ -84,5 +84,7 @@ Receiver findReceiver(float normalOffset)
     r.known = r.eyeDepth <= 0.0 || (behind && !below) ? 0.0 : below ? 1.0 : -1.0;
     return r;
 }
+
+Receiver findReceiver(float normalOffset) { return findReceiverOf(texelHere().xy, normalOffset); }
 
 void writeShadow(Receiver r, float psi) { imageStore(shadow, r.pixel, vec4(r.known >= 0.0 ? r.known : psi)); }

@@ -19,7 +19,7 @@ std::span<const ProbePlot> plotsOf(const Session& session) { return session.tech
 template <class Visit> void forColumns(std::span<const ProbePlot> plots, Visit&& visit) {
     size_t column = 0;
     for (const ProbePlot& plot : plots) {
-        if (plot.kind == ProbePlot::Kind::Around) continue;
+        if (plot.kind == ProbePlot::Kind::Around || plot.kind == ProbePlot::Kind::Curves) continue;
         visit(plot, column);
         column += plot.series.size();
     }
@@ -31,6 +31,42 @@ ImVec4 inkOf(const ProbePlot& plot, size_t series) {
     size_t line = 0;
     for (size_t i = 0; i < series; ++i) line += plot.series[i].mark == ProbeMark::Line;
     return lineColour(plot.series[series].mark == ProbeMark::Band && line > 0 ? line - 1 : line);
+}
+
+const ProbePlot* curvesOf(std::span<const ProbePlot> plots) {
+    const auto found =
+        std::find_if(plots.begin(), plots.end(), [](const ProbePlot& p) { return p.kind == ProbePlot::Kind::Curves; });
+    return found == plots.end() ? nullptr : &*found;
+}
+
+// The rows of a plot of curves: one value a series for every place of the first.
+struct Curves {
+    const ProbePlot& plot;
+    std::span<const float> row;
+    size_t count() const { return row.size() / plot.series.size(); }
+    float at(size_t place, size_t series) const { return row[place * plot.series.size() + series]; }
+    // Of a series at an abscissa between the places.
+    float valueAt(float x, size_t series) const {
+        for (size_t k = 1; k < count(); ++k) {
+            if (at(k, 0) < x) continue;
+            const float share = (x - at(k - 1, 0)) / std::max(at(k, 0) - at(k - 1, 0), 1e-30f);
+            return plot.series[series].mark == ProbeMark::Step ? at(k - 1, series)
+                                                               : std::lerp(at(k - 1, series), at(k, series), share);
+        }
+        return at(count() - 1, series);
+    }
+};
+
+ImVec4 curveInk(const ProbePlot& plot, size_t series) {
+    switch (plot.series[series].mark) {
+    case ProbeMark::Step: return colour::text;
+    case ProbeMark::Upright: return colour::muted;
+    default: break;
+    }
+    size_t line = 0;
+    for (size_t i = 1; i < series; ++i)
+        line += plot.series[i].mark == ProbeMark::Line || plot.series[i].mark == ProbeMark::Dashed;
+    return lineColour(line);
 }
 
 std::optional<float> truthAt(const Session& session, glm::ivec2 pixel) {
@@ -55,7 +91,9 @@ void ProbePanel::draw(const Session& session) {
     const ImVec2 room = ImGui::GetContentRegionAvail();
     const float beside = std::min(besideWidth * em, 0.45f * room.x);
     ImGui::BeginGroup();
-    course(session, {std::max(room.x - beside - ImGui::GetStyle().ItemSpacing.x, 1.0f), std::max(room.y, 1.0f)});
+    const ImVec2 chart{std::max(room.x - beside - ImGui::GetStyle().ItemSpacing.x, 1.0f), std::max(room.y, 1.0f)};
+    course(session, chart);
+    curves(plots, chart);
     ImGui::EndGroup();
     ImGui::SameLine();
     if (ImGui::BeginChild("probe beside", {0, 0})) {
@@ -112,6 +150,53 @@ void ProbePanel::course(const Session& session, ImVec2 size) {
         drawCourse(plot, shown, column, truth);
         list.PopClipRect();
     });
+}
+
+void ProbePanel::curves(std::span<const ProbePlot> plots, ImVec2 size) const {
+    const ProbePlot* const shown = curvesOf(plots);
+    if (!shown) return;
+    ImGui::AlignTextToFramePadding();
+    text(colour::muted, shown->title);
+    tooltip(shown->help);
+    const Curves curves{*shown, probe.row()};
+    const bool known = curves.count() > 1;
+    const float heading = ImGui::GetFrameHeightWithSpacing();
+    const Plot plot{ImGui::GetCursorScreenPos(),
+                    {size.x, std::max(size.y - heading, 1.0f)},
+                    {known ? curves.at(0, 0) : 0.0, known ? curves.at(curves.count() - 1, 0) : 1.0, false},
+                    {-0.06, 1.06, false},
+                    shown->across,
+                    shown->up};
+    ImGui::Dummy(plot.size);
+    plot.drawPaper();
+    if (!plot.drawable()) return;
+    plot.drawAxes();
+    if (!known) return;
+    ImDrawList& list = *ImGui::GetWindowDrawList();
+    const float em = ImGui::GetFontSize(), width = 0.12f * em;
+    list.PushClipRect({plot.low().x, plot.high().y}, {plot.high().x, plot.low().y}, true);
+    for (size_t i = 1; i < shown->series.size(); ++i) {
+        const ImU32 ink = ImGui::GetColorU32(curveInk(*shown, i));
+        const auto point = [&](size_t k) { return plot.at(curves.at(k, 0), curves.at(k, i)); };
+        const ProbeMark mark = shown->series[i].mark;
+        if (mark == ProbeMark::Upright) {
+            const float x = plot.at(curves.at(0, i), 0).x;
+            list.AddLine({x, plot.low().y}, {x, plot.high().y}, ink, width);
+            continue;
+        }
+        constexpr size_t dash = 4; // places
+        for (size_t k = 1; k < curves.count(); ++k) {
+            if (mark == ProbeMark::Dashed && k / dash % 2 == 1) continue;
+            const ImVec2 from = point(k - 1), to = point(k);
+            if (mark == ProbeMark::Step) {
+                list.AddLine(from, {to.x, from.y}, ink, 1.6f * width);
+                list.AddLine({to.x, from.y}, to, ink, 1.6f * width);
+            } else {
+                list.AddLine(from, to, ink, width);
+            }
+        }
+    }
+    list.PopClipRect();
 }
 
 void ProbePanel::drawCourse(const Plot& plot, const ProbePlot& course, size_t column,
@@ -200,6 +285,18 @@ void ProbePanel::numbers(const Session& session, std::optional<float> truth) con
         for (size_t i = 0; i < plot.series.size(); ++i)
             line(inkOf(plot, i), plot.series[i].name, ShortText("{:.4g}", samples.back().values[column + i]));
     });
+    if (const ProbePlot* const shown = curvesOf(plotsOf(session))) {
+        const Curves curves{*shown, probe.row()};
+        const auto fragment = std::find_if(shown->series.begin(), shown->series.end(),
+                                           [](const ProbeSeries& s) { return s.mark == ProbeMark::Upright; });
+        if (curves.count() > 1 && fragment != shown->series.end()) {
+            const auto upright = static_cast<size_t>(fragment - shown->series.begin());
+            const float x = curves.at(0, upright);
+            for (size_t i = 1; i < shown->series.size(); ++i)
+                line(curveInk(*shown, i), shown->series[i].name,
+                     ShortText("{:.4f}", i == upright ? x : curves.valueAt(x, i)));
+        }
+    }
     if (truth) line(truthInk, "truth ψ*", ShortText("{:.4f}", *truth));
     ImGui::EndTable();
     if (!truth) text(colour::muted, "no truth yet (Y)");
@@ -217,7 +314,7 @@ void ProbePanel::overlay(const Session& session, ImVec2 corner, ImVec2 size) con
     const ImU32 ink = ImGui::GetColorU32(colour::accent), dark = IM_COL32(0, 0, 0, 170);
     for (const ProbePlot& plot : plotsOf(session)) {
         if (plot.kind != ProbePlot::Kind::Around) continue;
-        const std::vector<float>& around = probe.around();
+        const std::vector<float>& around = probe.row();
         for (size_t i = 0; i + 2 < around.size(); i += 3) {
             if (around[i + 2] < 0) continue;
             const ImVec2 place{at.x + around[i] * unit, at.y - around[i + 1] * unit};

@@ -21,6 +21,7 @@ public:
 private:
     void course(const Session& session, ImVec2 size);
     void drawCourse(const Plot& plot, const ProbePlot& course, size_t column, std::optional<float> truth) const;
+    void curves(std::span<const ProbePlot> plots, ImVec2 size) const;
     void places(const ProbePlot& plot, size_t column, float side) const;
     void numbers(const Session& session, std::optional<float> truth) const;
 

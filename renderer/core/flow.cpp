@@ -9,9 +9,11 @@ namespace penumbra {
 
 const FormatInfo& info(Format format) {
     static constexpr FormatInfo table[] = {
-        {"RGBA8", 4, 4}, {"RG16", 2, 4},     {"RGBA16", 4, 8},   {"RGBA16_SNORM", 4, 8},
-        {"R16F", 1, 2},  {"RG16F", 2, 4},    {"RGBA16F", 4, 8},  {"R32F", 1, 4},
-        {"RG32F", 2, 8}, {"RGBA32F", 4, 16}, {"DEPTH32F", 1, 4},
+        {"RGBA8", 4, 4},           {"RG16", 2, 4},     {"RGBA16", 4, 8},
+        {"RGBA16_SNORM", 4, 8},    {"R16F", 1, 2},     {"RG16F", 2, 4},
+        {"RGBA16F", 4, 8},         {"R32F", 1, 4},     {"RG32F", 2, 8},
+        {"RGBA32F", 4, 16},        {"DEPTH32F", 1, 4}, {"RG32UI", 2, 8, true},
+        {"RGBA32UI", 4, 16, true},
     };
     return table[static_cast<size_t>(format)];
 }

@@ -86,6 +86,7 @@ struct Read {
     std::string_view sampler;
     std::variant<std::monostate, Image, PastImage> image;
     Sampling sampling = Sampling::Nearest;
+    int anisotropy = 1; // of LinearMipmap: samples along the footprint's longer axis at most, up to the driver's limit
     bool operator==(const Read&) const = default;
 };
 
@@ -96,7 +97,7 @@ struct Define {
 };
 using Defines = FixedVector<Define, 8>;
 
-// One invocation per texel of the first written image.
+// One invocation per texel of the first written image. Further levels of what a pass writes are made of the first.
 struct Compute {
     std::string_view shader; // file below shaders/
     Defines defines = {};

@@ -10,12 +10,27 @@
 
 namespace penumbra {
 
-enum class Format : uint8_t { RGBA8, RG16, RGBA16, RGBA16Snorm, R16F, RG16F, RGBA16F, R32F, RG32F, RGBA32F, Depth32F };
+enum class Format : uint8_t {
+    RGBA8,
+    RG16,
+    RGBA16,
+    RGBA16Snorm,
+    R16F,
+    RG16F,
+    RGBA16F,
+    R32F,
+    RG32F,
+    RGBA32F,
+    Depth32F,
+    RG32UI,
+    RGBA32UI
+};
 
 struct FormatInfo {
     std::string_view name; // as OpenGL calls it, without the prefix
     int channels;
     int bytesPerTexel;
+    bool whole = false; // of unsigned whole numbers, which shaders read through a usampler
 };
 const FormatInfo& info(Format format);
 

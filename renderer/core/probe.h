@@ -13,7 +13,10 @@ namespace penumbra {
 enum class ProbeMark {
     Line, // joins the values
     Dots,
-    Band, // half as wide as twice the value around the line before
+    Band,    // half as wide as twice the value around the line before
+    Dashed,  // joins the values as well
+    Step,    // holds each value until the next
+    Upright, // of curves: a line from top to bottom at the first value
 };
 struct ProbeSeries {
     std::string_view channel;
@@ -27,10 +30,12 @@ struct ProbePlot {
         Places, // of each frame a dot at the first two series, in [−1, 1]²; filled where the third is 1
         Around, // of one frame: dots over the view, around the pixel, at the first two series [pixels], by the third:
                 // 1 counts, 0 does not, negative is none
+        Curves, // of one frame: over the values of the first series those of the others
     };
     Kind kind = Kind::Course;
     std::string_view title, help;
-    std::span<const ProbeSeries> series; // static
+    std::span<const ProbeSeries> series;   // static
+    std::string_view across = {}, up = {}; // the axes of curves
 };
 
 } // namespace penumbra

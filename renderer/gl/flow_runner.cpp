@@ -139,7 +139,7 @@ void FlowRunner::bindReads(const Flow& flow, const Flow::PassNode& pass, const P
         const Texture& texture =
             image ? this->texture(flow, *image) : this->texture(flow, std::get<PastImage>(read->image));
         glBindTextureUnit(sampler.unit, texture.name());
-        glBindSampler(sampler.unit, samplers_.get(read->sampling));
+        glBindSampler(sampler.unit, samplers_.get(read->sampling, read->anisotropy));
     }
     if (pass.constants.size()) uniforms_.bind(0, at_.constants, pass.constants.size());
     if (!pass.parameterBlock.empty()) uniforms_.bind(1, at_.parameters, pass.parameterBlock.size() * sizeof(uint32_t));
@@ -443,6 +443,9 @@ void FlowRunner::runPart(const Flow& flow, std::optional<double> millisecondsLef
                         GL_TEXTURE_UPDATE_BARRIER_BIT | GL_FRAMEBUFFER_BARRIER_BIT | GL_SHADER_STORAGE_BARRIER_BIT);
         at_.parts += at_.lastParts;
     }
+    if (at_.parts == all)
+        for (const Image image : pass.writes)
+            if (flow.spec(image).extent.levels > 1) glGenerateTextureMipmap(texture(flow, image).name());
     timer_.endPass(pass.stage, pass.label);
     if (millisecondsLeft) fence_ = glFenceSync(GL_SYNC_GPU_COMMANDS_COMPLETE, 0);
 }

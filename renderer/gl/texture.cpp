@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <bit>
 
 namespace penumbra {
 
@@ -20,8 +21,15 @@ GlFormat glFormat(Format format) {
         {GL_RG32F, GL_RG, GL_FLOAT},
         {GL_RGBA32F, GL_RGBA, GL_FLOAT},
         {GL_DEPTH_COMPONENT32F, GL_DEPTH_COMPONENT, GL_FLOAT},
+        {GL_RG32UI, GL_RG_INTEGER, GL_UNSIGNED_INT},
+        {GL_RGBA32UI, GL_RGBA_INTEGER, GL_UNSIGNED_INT},
     };
     return table[static_cast<size_t>(format)];
+}
+
+void toFloats(Format format, std::span<float> readBack) {
+    if (!info(format).whole) return;
+    for (float& value : readBack) value = static_cast<float>(std::bit_cast<uint32_t>(value));
 }
 
 Texture::Texture(std::string_view label, Format format, Extent extent) : format_(format), extent_(extent) {
@@ -50,6 +58,10 @@ Texture::Texture(std::string_view label, Format format, Extent extent) : format_
         glTextureStorage3D(name, extent.levels, internal, extent.width, extent.height, extent.layers);
     else
         glTextureStorage2D(name, extent.levels, internal, extent.width, extent.height);
+    if (info(format).whole) { // without a sampler they can be read by texel only if nothing would be interpolated
+        glTextureParameteri(name, GL_TEXTURE_MIN_FILTER, GL_NEAREST);
+        glTextureParameteri(name, GL_TEXTURE_MAG_FILTER, GL_NEAREST);
+    }
     glObjectLabel(GL_TEXTURE, name, static_cast<GLsizei>(label.size()), label.data());
 }
 
@@ -75,6 +87,7 @@ std::vector<float> Texture::read(int layer, int level) const {
     glPixelStorei(GL_PACK_ALIGNMENT, 4);
     glGetTextureSubImage(name(), level, 0, 0, layer, width, height, 1, gl.layout, gl.type,
                          static_cast<GLsizei>(values.size() * sizeof(float)), values.data());
+    toFloats(format_, values);
     return values;
 }
 
@@ -88,11 +101,9 @@ float Texture::readTexel(int x, int y) const {
 
 Samplers::Samplers() {
     static constexpr std::string_view labels[] = {"nearest", "linear", "linear mipmap", "compare"};
-    for (size_t i = 0; i < std::size(handles_); ++i) {
+    const auto make = [](Sampling sampling) {
         GLuint name = 0;
         glCreateSamplers(1, &name);
-        handles_[i] = Handle<destroy>(name);
-        const Sampling sampling = static_cast<Sampling>(i);
         const GLint filter = sampling == Sampling::Nearest ? GL_NEAREST : GL_LINEAR;
         glSamplerParameteri(name, GL_TEXTURE_MAG_FILTER, filter);
         glSamplerParameteri(name, GL_TEXTURE_MIN_FILTER,
@@ -103,7 +114,14 @@ Samplers::Samplers() {
             glSamplerParameteri(name, GL_TEXTURE_COMPARE_MODE, GL_COMPARE_REF_TO_TEXTURE);
             glSamplerParameteri(name, GL_TEXTURE_COMPARE_FUNC, GL_LEQUAL);
         }
-        glObjectLabel(GL_SAMPLER, name, static_cast<GLsizei>(labels[i].size()), labels[i].data());
+        const std::string_view label = labels[static_cast<size_t>(sampling)];
+        glObjectLabel(GL_SAMPLER, name, static_cast<GLsizei>(label.size()), label.data());
+        return Handle<destroy>(name);
+    };
+    for (size_t i = 0; i < std::size(handles_); ++i) handles_[i] = make(static_cast<Sampling>(i));
+    for (int i = 2; i <= mostAnisotropy; ++i) {
+        anisotropic_[i] = make(Sampling::LinearMipmap);
+        glSamplerParameterf(anisotropic_[i].get(), GL_TEXTURE_MAX_ANISOTROPY, static_cast<float>(i));
     }
 }
 

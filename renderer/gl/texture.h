@@ -4,6 +4,7 @@
 #include "renderer/core/flow.h"
 #include "renderer/gl/handle.h"
 
+#include <span>
 #include <string_view>
 #include <vector>
 
@@ -42,19 +43,26 @@ private:
 };
 
 struct GlFormat {
-    GLenum internal, layout, type; // layout and type: as it is cleared and read back, in floats
+    GLenum internal, layout, type; // layout and type: as it is cleared and read back, in floats or whole numbers
 };
 GlFormat glFormat(Format format);
+// Turns texels that were read back into floats, the nearest ones to whole numbers.
+void toFloats(Format format, std::span<float> readBack);
 
 // The sampler objects of enum Sampling, made once for a context.
 class Samplers {
 public:
     Samplers();
-    GLuint get(Sampling sampling) const { return handles_[static_cast<size_t>(sampling)].get(); }
+    GLuint get(Sampling sampling, int anisotropy = 1) const {
+        const auto number = static_cast<size_t>(sampling);
+        return anisotropy > 1 ? anisotropic_[static_cast<size_t>(anisotropy)].get() : handles_[number].get();
+    }
+    static constexpr int mostAnisotropy = 16;
 
 private:
     static void destroy(GLuint name) { glDeleteSamplers(1, &name); }
     Handle<destroy> handles_[4];
+    Handle<destroy> anisotropic_[mostAnisotropy + 1]; // LinearMipmap, from 2 on
 };
 
 } // namespace penumbra

@@ -49,6 +49,7 @@ const Program& Inspector::program(const char* shader, const Source& source, Defi
         defines.push_back({"MULTISAMPLED"});
     else if (source.texture.extent().layers > 1)
         defines.push_back({"ARRAY"});
+    if (info(source.texture.format()).whole) defines.push_back({"WHOLE"});
     return programs_.get(ProgramKind::Compute, shader, defines, nullptr);
 }
 
@@ -169,6 +170,7 @@ void Inspector::read(const Source& source, ivec2 corner, ivec2 size, std::vector
     glGetTextureSubImage(source.texture.name(), source.level, corner.x, whole.y - corner.y - size.y, source.layer,
                          size.x, size.y, 1, format.layout, format.type,
                          static_cast<GLsizei>(values.size() * sizeof(float)), values.data());
+    toFloats(source.texture.format(), values);
     for (auto low = values.begin(), high = values.end() - static_cast<ptrdiff_t>(row); low < high;
          low += static_cast<ptrdiff_t>(row), high -= static_cast<ptrdiff_t>(row))
         std::swap_ranges(low, low + static_cast<ptrdiff_t>(row), high);

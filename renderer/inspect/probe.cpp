@@ -32,7 +32,7 @@ void Probe::forget() {
     for (Flight& flight : flights_)
         if (flight.fence) glDeleteSync(std::exchange(flight.fence, nullptr));
     samples_.clear();
-    around_.clear();
+    row_.clear();
 }
 
 void Probe::follow(glm::dvec2 place) {
@@ -61,7 +61,8 @@ void Probe::prepare(std::span<const ProbePlot> plots, std::string_view owner) {
         for (const ProbeSeries& series : plot.series) {
             const size_t dot = series.channel.find('.');
             sources_.push_back({owner_ + "." + std::string(series.channel.substr(0, dot)),
-                                series.channel.substr(dot + 1), plot.kind == ProbePlot::Kind::Around});
+                                series.channel.substr(dot + 1),
+                                plot.kind == ProbePlot::Kind::Around || plot.kind == ProbePlot::Kind::Curves});
         }
 }
 
@@ -144,16 +145,16 @@ void Probe::land(Flight& flight) {
     Sample sample{flight.frame, {}};
     sample.values.fill(std::numeric_limits<float>::quiet_NaN());
     size_t column = 0;
-    around_.clear();
+    row_.clear();
     for (size_t texel = 0, most = 1; texel < most; ++texel)
         for (size_t i = 0; i < sources_.size(); ++i) {
             const Read& read = flight.reads[i];
-            if (!sources_[i].around || read.count == 0) continue;
+            if (!sources_[i].ofRow || read.count == 0) continue;
             most = read.count;
-            around_.push_back(values[read.offset + texel * read.stride]);
+            row_.push_back(values[read.offset + texel * read.stride]);
         }
     for (size_t i = 0; i < sources_.size(); ++i) {
-        if (sources_[i].around) continue;
+        if (sources_[i].ofRow) continue;
         if (flight.reads[i].count > 0) sample.values[column] = values[flight.reads[i].offset];
         ++column;
     }

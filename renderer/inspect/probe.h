@@ -34,15 +34,15 @@ public:
         std::array<float, 12> values;
     };
     const std::vector<Sample>& samples() const { return samples_; }
-    // Of the plot that is drawn around the pixel: its series, one after the other for every texel of the row.
-    const std::vector<float>& around() const { return around_; }
+    // Of the plot that a row tells, around the pixel or of curves: its series, one after the other for every texel.
+    const std::vector<float>& row() const { return row_; }
 
 private:
     // Where a series stands among what is read.
     struct Source {
         std::string label; // of the image
         std::string_view channel;
-        bool around;
+        bool ofRow;
     };
     struct Read {                                 // of a source, in floats
         size_t offset = 0, stride = 0, count = 0; // count 0: it is not there
@@ -69,7 +69,7 @@ private:
     Flights flights_;
     size_t next_ = 0;
     std::vector<Sample> samples_;
-    std::vector<float> around_;
+    std::vector<float> row_;
 };
 
 } // namespace penumbra

@@ -9,7 +9,7 @@ namespace penumbra {
 
 using glm::vec3;
 #include "shaders/shared/moments.glsl.h"
-static_assert(sizeof(MomentFilterBlock) == 688 && sizeof(MomentLookupBlock) == 256);
+static_assert(sizeof(MomentFilterBlock) == 688 && sizeof(MomentLookupBlock) == 272);
 
 inline constexpr double largestMomentMap = 8192; // texels along a side
 
@@ -41,6 +41,49 @@ struct KernelParameters : ParameterGroup {
                 .active = [](const ParameterSet& p) { return p.at("kernel").value() > 1; },
                 .inactiveReason = "a kernel of one texel has none"}};
     End end{set};
+};
+
+// How many depths a texel has, and how many texels a pixel.
+struct MapSampling {
+    int samples = 1; // of the shadow map, a texel
+    bool mipmaps = false;
+    int anisotropy = 1; // samples of the mip chain along the longer axis of a pixel's footprint, at most
+};
+struct MapSamplingParameters : ParameterGroup {
+    explicit MapSamplingParameters(ParameterSet& s) : ParameterGroup(s, "Sampling") {}
+    Choice<int> samples{set,
+                        {.id = "samples",
+                         .label = "Depths a texel",
+                         .source = "Peters and Klein 2015, section 5 (4)",
+                         .help =
+                             "Samples of a multisampled shadow map, each turned into what the map keeps before they "
+                             "are averaged. Edges shimmer less; the driver says which counts there are.",
+                         .choices = sampleNames}};
+    Flag mipmaps{set,
+                 {.id = "mipmaps",
+                  .label = "Mip chain",
+                  .value = 0,
+                  .source = "Williams 1983",
+                  .help = "Trilinear sampling: where a pixel covers many texels it reads their mean instead of one "
+                          "place's. Costs a third more memory; without it far shadows shimmer."}};
+    Integer anisotropy{set,
+                       {.id = "anisotropy",
+                        .value = 1,
+                        .min = 1,
+                        .max = 16,
+                        .unit = Unit::Samples,
+                        .source = "Donnelly and Lauritzen 2006",
+                        .help = "At most so many samples along the longer axis of a pixel's footprint. Where the view "
+                                "grazes a surface shadows are blurred less.",
+                        .active = [](const ParameterSet& p) { return p.at("mipmaps").value() != 0; },
+                        .inactiveReason = "there is no mip chain"}};
+    End end{set};
+
+    MapSampling describe() const { return {1 << samples, mipmaps, anisotropy}; }
+    TextureReads reads(int layers = 1) const {
+        return {(mipmaps ? 8 : 4) * layers, (mipmaps ? 8 * anisotropy : 4) * layers};
+    }
+    static constexpr std::string_view sampleNames[] = {"1", "2", "4", "8"};
 };
 
 // The slope bias of bounds by four moments: half of the deviation that a kernel, with bilinear sampling, finds in the
@@ -102,7 +145,7 @@ bool isHalf(const ParameterSet& set);
 
 // Of techniques that bound ψ by a mean and a variance.
 struct MinimumVariance : Real {
-    explicit MinimumVariance(ParameterSet& set)
+    explicit MinimumVariance(ParameterSet& set, double (*defaultFrom)(const ParameterSet&) = usual)
         : Real(set,
                {.id = "minimum-variance",
                 .label = "Minimum variance",
@@ -114,7 +157,7 @@ struct MinimumVariance : Real {
                 .source = "Donnelly and Lauritzen 2006",
                 .help = "Variances below count as this, in squares of the depth range. Hides rounding on lit surfaces; "
                         "more of it lets light through at contacts.",
-                .defaultFrom = usual}) {}
+                .defaultFrom = defaultFrom}) {}
     static double usual(const ParameterSet& set);
 };
 struct LightBleedingReduction : Real {
@@ -156,6 +199,7 @@ enum class DepthFunctions { Powers, Exponential, Exponentials, Trigonometric, Sq
 
 struct MomentMapDescription {
     ShadowMapDescription map;
+    MapSampling sampling = {};
     int kernel = 1;
     float sigma = 1;
     DepthFunctions functions = DepthFunctions::Powers;
@@ -173,26 +217,38 @@ struct MomentMapDescription {
 // on each side.
 struct MomentMap {
     Image moments;
-    Image depth; // the shadow map
+    ShadowMapDescription depths; // one a texel
+    MapSampling sampling;
     LightViewBlock view;
     int border;           // half a kernel [texels]
     glm::vec4 weights[8]; // of the kernel
 };
 MomentMap drawMomentMap(Flow& flow, Scope scope, const Inputs& inputs, const MomentMapDescription& description);
 
+// How the first two or four powers are stored: matrix · powers + offset, in [0, 1] for whole numbers.
+struct MomentEncoding {
+    glm::dmat4 matrix{1};
+    glm::dvec4 offset{0};
+};
+MomentEncoding encodingOf(int count, MomentFormat format, DepthSign sign);
+
 // The first two or four powers as the parameters say, and how they are read with the moment bias α.
-MomentMapDescription describePowers(int count, const ShadowMapDescription& map, const KernelParameters& kernel,
-                                    const MomentParameters& moments);
-MomentLookupBlock lookupOfPowers(int count, const MomentParameters& moments, double alpha = 0);
+MomentMapDescription describePowers(int count, const ShadowMapDescription& map, const MapSampling& sampling,
+                                    const KernelParameters& kernel, const MomentParameters& moments);
+MomentLookupBlock lookupOfPowers(int count, MomentFormat format, DepthSign sign, double alpha);
+inline MomentLookupBlock lookupOfPowers(int count, const MomentParameters& moments, double alpha = 0) {
+    return lookupOfPowers(count, moments.format, moments.depthSign, alpha);
+}
 
 // So many slices of the depth range (lib/slices.glsl), two moments each.
-MomentMapDescription describeSlices(int count, const ShadowMapDescription& map, const KernelParameters& kernel,
-                                    MomentFormat format, float overlap);
+MomentMapDescription describeSlices(int count, const ShadowMapDescription& map, const MapSampling& sampling,
+                                    const KernelParameters& kernel, MomentFormat format, float overlap);
 MomentLookupBlock lookupOfSlices(MomentFormat format);
 
 // The pass from a moment map to ψ: a shader that includes moment_lookup.glsl; `withDepths` reads the shadow map as
-// well.
+// well. Where a pixel is probed another pass tells of its kernel, for kernelPlots().
 Image resolveMoments(Flow& flow, Scope scope, const Inputs& inputs, std::string_view shader, const MomentMap& map,
                      const MomentLookupBlock& lookup, const ParameterSet& parameters, bool withDepths = false);
+std::span<const ProbePlot> kernelPlots();
 
 } // namespace penumbra

@@ -364,7 +364,7 @@ ShadowMap drawShadowMap(Flow& flow, Scope scope, const Inputs& inputs, const Sha
     ensure(!description.signMovers || (layer == 0 && description.format == Format::R32F), "a depth that has no sign");
     const LightViewBlock view = lightView(inputs, description);
     const Extent extent{.width = description.size, .height = description.size, .samples = description.samples};
-    const std::string_view name = names[layer];
+    const std::string_view name = description.samples > 1 ? "shadow-map-samples" : names[layer];
     const bool nearestOnly = layer == 0 && description.faces == Faces::Casting && seesFromOutside(inputs, view);
     Draw draw{.shader = "shadow_map.glsl",
               .geometry = inputs.geometry,

@@ -155,8 +155,8 @@ inline LightViewBlock lightView(const Inputs& inputs, const ShadowMapDescription
     return lightView(inputs.light, inputs.occluders, description, &inputs.view);
 }
 
-// Draws a map: an image "shadow-map" ("shadow-map-2" for the second layer ...) of linear depth in [0, 1], 1 where
-// nothing casts. Layers are peeled one behind the other, each with those before it.
+// Draws a map: an image "shadow-map" ("shadow-map-2" for the second layer ..., "shadow-map-samples") of linear depth in
+// [0, 1], 1 where nothing casts. Layers are peeled one behind the other, each with those before it.
 struct ShadowMap {
     Image depth;
     LightViewBlock view;

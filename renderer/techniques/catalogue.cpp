@@ -22,6 +22,8 @@
     X(msmHausdorff)                                                                                                    \
     X(msmTrigonometric)                                                                                                \
     X(msmSix)                                                                                                          \
+    X(vsmSoft)                                                                                                         \
+    X(msmSoft)                                                                                                         \
     X(fractionalDisk)
 
 namespace penumbra {

@@ -23,6 +23,7 @@ constexpr std::string_view shownNames[] = {"series", "doubled", "bound"};
 
 struct Parameters : ParameterSet {
     ShadowMapParameters map{*this, {.largest = largestMomentMap}};
+    MapSamplingParameters sampling{*this};
     KernelParameters kernel{*this};
     Choice<StoredAs> format{*this,
                             {.id = "format",
@@ -103,9 +104,9 @@ class Convolution final : public Technique {
 public:
     ParameterSet& parameters() override { return parameters_; }
     std::optional<TextureReads> readsPerPixel() const override {
-        const int reads = 4 * ((parameters_.terms + 1) / 2);
-        return TextureReads{reads, reads};
+        return parameters_.sampling.reads((parameters_.terms + 1) / 2);
     }
+    std::span<const ProbePlot> probePlots() const override { return kernelPlots(); }
     Image build(Flow& flow, Scope scope, const Inputs& inputs) const override {
         static constexpr Channel channels[] = {
             {"sin", "sin c₁x", "mean of the sine of the layer's first term", Unit::None, -1, 1},
@@ -117,6 +118,7 @@ public:
         const glm::vec2 depth{1 - float(p.margin), 0};
         const MomentMap map = drawMomentMap(flow, scope, inputs,
                                             {.map = p.map.describe(),
+                                             .sampling = p.sampling.describe(),
                                              .kernel = p.kernel.kernel,
                                              .sigma = p.kernel.sigma,
                                              .functions = DepthFunctions::SquareWave,

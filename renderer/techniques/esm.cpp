@@ -18,6 +18,7 @@ double largestExponent(const ParameterSet& set) { return isHalf(set) ? 19.4 : 17
 
 struct Parameters : ParameterSet {
     ShadowMapParameters map{*this, {.largest = largestMomentMap}};
+    MapSamplingParameters sampling{*this};
     KernelParameters kernel{*this};
     FloatFormatChoice format{*this};
     Real exponent{*this,
@@ -47,14 +48,18 @@ public:
     ParameterSet& parameters() override { return parameters_; }
     std::optional<TextureReads> readsPerPixel() const override {
         const int side = parameters_.kernel.kernel + 1; // bilinear
-        return TextureReads{4, parameters_.fallback ? 4 + side * side : 4};
+        TextureReads reads = parameters_.sampling.reads();
+        if (parameters_.fallback) reads.most += side * side;
+        return reads;
     }
+    std::span<const ProbePlot> probePlots() const override { return kernelPlots(); }
     Image build(Flow& flow, Scope scope, const Inputs& inputs) const override {
         static constexpr Channel channels[] = {
             {"exp", "e^c(z − ½)", "mean of the exponential of the depth, c times z − ½"}};
         const Parameters& p = parameters_;
         const MomentMap map = drawMomentMap(flow, scope, inputs,
                                             {.map = p.map.describe(),
+                                             .sampling = p.sampling.describe(),
                                              .kernel = p.kernel.kernel,
                                              .sigma = p.kernel.sigma,
                                              .functions = DepthFunctions::Exponential,

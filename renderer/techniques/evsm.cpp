@@ -17,6 +17,7 @@ constexpr std::string_view componentNames[] = {"2", "4"};
 
 struct Parameters : ParameterSet {
     ShadowMapParameters map{*this, {.largest = largestMomentMap}};
+    MapSamplingParameters sampling{*this};
     KernelParameters kernel{*this};
     FloatFormatChoice format{*this};
     Choice<Components> components{
@@ -76,7 +77,8 @@ struct Parameters : ParameterSet {
 class Evsm final : public Technique {
 public:
     ParameterSet& parameters() override { return parameters_; }
-    std::optional<TextureReads> readsPerPixel() const override { return TextureReads{4, 4}; }
+    std::optional<TextureReads> readsPerPixel() const override { return parameters_.sampling.reads(); }
+    std::span<const ProbePlot> probePlots() const override { return kernelPlots(); }
     Image build(Flow& flow, Scope scope, const Inputs& inputs) const override {
         static constexpr Channel channels[] = {{"p", "e^c₊x", "mean of the positive warp of the depth x = 2z − 1"},
                                                {"p2", "e^2c₊x", "mean of its square"},
@@ -90,6 +92,7 @@ public:
         const glm::vec2 exponents{float(p.positive), float(p.negative)};
         const MomentMap map = drawMomentMap(flow, scope, inputs,
                                             {.map = p.map.describe(),
+                                             .sampling = p.sampling.describe(),
                                              .kernel = p.kernel.kernel,
                                              .sigma = p.kernel.sigma,
                                              .functions = DepthFunctions::Exponentials,

@@ -13,11 +13,12 @@ public:
     using SlopeBias = double (*)(const ParameterSet&);
     FourMoments(std::string_view shader, SlopeBias usualBias) : shader_(shader), parameters_(usualBias) {}
     ParameterSet& parameters() override { return parameters_; }
-    std::optional<TextureReads> readsPerPixel() const override { return TextureReads{4, 4}; }
+    std::optional<TextureReads> readsPerPixel() const override { return parameters_.sampling.reads(); }
+    std::span<const ProbePlot> probePlots() const override { return kernelPlots(); }
     Image build(Flow& flow, Scope scope, const Inputs& inputs) const override {
         const Parameters& p = parameters_;
-        const MomentMap map =
-            drawMomentMap(flow, scope, inputs, describePowers(4, p.map.describe(), p.kernel, p.moments));
+        const MomentMap map = drawMomentMap(
+            flow, scope, inputs, describePowers(4, p.map.describe(), p.sampling.describe(), p.kernel, p.moments));
         return resolveMoments(flow, scope, inputs, shader_, map, lookupOfPowers(4, p.moments, p.momentBias), p);
     }
 
@@ -26,6 +27,7 @@ private:
         explicit Parameters(SlopeBias usualBias)
             : bias(*this, {.slope = 0, .normalOffset = 0, .slopeFrom = usualBias}) {}
         ShadowMapParameters map{*this, {.largest = largestMomentMap}};
+        MapSamplingParameters sampling{*this};
         KernelParameters kernel{*this};
         MomentParameters moments{*this, MomentFormat::Unorm16Optimised, DepthSign::Signed};
         MomentBias momentBias{*this};

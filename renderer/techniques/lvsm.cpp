@@ -11,6 +11,7 @@ constexpr int mostSlices = 8;
 
 struct Parameters : ParameterSet {
     ShadowMapParameters map{*this, {.largest = largestMomentMap}};
+    MapSamplingParameters sampling{*this};
     KernelParameters kernel{*this};
     MomentFormatChoice format{*this, MomentFormat::Unorm16Optimised};
     Integer slices{*this,
@@ -38,13 +39,14 @@ class Lvsm final : public Technique {
 public:
     ParameterSet& parameters() override { return parameters_; }
     std::optional<TextureReads> readsPerPixel() const override {
-        const int reads = 4 * ((parameters_.slices + 1) / 2);
-        return TextureReads{reads, reads};
+        return parameters_.sampling.reads((parameters_.slices + 1) / 2);
     }
+    std::span<const ProbePlot> probePlots() const override { return kernelPlots(); }
     Image build(Flow& flow, Scope scope, const Inputs& inputs) const override {
         const Parameters& p = parameters_;
-        const MomentMap map = drawMomentMap(flow, scope, inputs,
-                                            describeSlices(p.slices, p.map.describe(), p.kernel, p.format, p.overlap));
+        const MomentMap map = drawMomentMap(
+            flow, scope, inputs,
+            describeSlices(p.slices, p.map.describe(), p.sampling.describe(), p.kernel, p.format, p.overlap));
         return resolveMoments(flow, scope, inputs, "techniques/lvsm.glsl", map, lookupOfSlices(p.format), p);
     }
 

@@ -11,6 +11,7 @@ namespace {
 
 struct Parameters : ParameterSet {
     ShadowMapParameters map{*this, {.largest = largestMomentMap}};
+    MapSamplingParameters sampling{*this};
     KernelParameters kernel{*this};
     MomentBias momentBias{*this, [](const ParameterSet&) { return 1e-4; }};
     BiasParameters bias{*this, {.slope = 0, .normalOffset = 0, .slopeFrom = planeBias}};
@@ -19,7 +20,8 @@ struct Parameters : ParameterSet {
 class MsmSix final : public Technique {
 public:
     ParameterSet& parameters() override { return parameters_; }
-    std::optional<TextureReads> readsPerPixel() const override { return TextureReads{8, 8}; }
+    std::optional<TextureReads> readsPerPixel() const override { return parameters_.sampling.reads(2); }
+    std::span<const ProbePlot> probePlots() const override { return kernelPlots(); }
     Image build(Flow& flow, Scope scope, const Inputs& inputs) const override {
         static constexpr Channel channels[] = {
             {"b1", "b₁, b₅", "mean of the depth in [−1, 1]; second layer: of its fifth power"},
@@ -30,6 +32,7 @@ public:
         constexpr glm::vec2 depth{2, -1};
         const MomentMap map = drawMomentMap(flow, scope, inputs,
                                             {.map = p.map.describe(),
+                                             .sampling = p.sampling.describe(),
                                              .kernel = p.kernel.kernel,
                                              .sigma = p.kernel.sigma,
                                              .format = Format::RGBA32F,

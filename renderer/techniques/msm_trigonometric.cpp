@@ -22,6 +22,7 @@ double usualBias(const ParameterSet& set) {
 
 struct Parameters : ParameterSet {
     ShadowMapParameters map{*this, {.largest = largestMomentMap}};
+    MapSamplingParameters sampling{*this};
     KernelParameters kernel{*this};
     Choice<StoredAs> format{*this,
                             {.id = "format",
@@ -57,7 +58,8 @@ struct Parameters : ParameterSet {
 class MsmTrigonometric final : public Technique {
 public:
     ParameterSet& parameters() override { return parameters_; }
-    std::optional<TextureReads> readsPerPixel() const override { return TextureReads{4, 4}; }
+    std::optional<TextureReads> readsPerPixel() const override { return parameters_.sampling.reads(); }
+    std::span<const ProbePlot> probePlots() const override { return kernelPlots(); }
     Image build(Flow& flow, Scope scope, const Inputs& inputs) const override {
         static constexpr Channel channels[] = {
             {"sin", "sin 2πx", "mean of the depth's sine", Unit::None, -1, 1},
@@ -69,6 +71,7 @@ public:
         const glm::vec2 depth{1 - float(p.margin), float(p.margin)};
         const MomentMap map = drawMomentMap(flow, scope, inputs,
                                             {.map = p.map.describe(),
+                                             .sampling = p.sampling.describe(),
                                              .kernel = p.kernel.kernel,
                                              .sigma = p.kernel.sigma,
                                              .functions = DepthFunctions::Trigonometric,

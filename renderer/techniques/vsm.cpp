@@ -12,6 +12,7 @@ namespace {
 
 struct Parameters : ParameterSet {
     ShadowMapParameters map{*this, {.largest = largestMomentMap}};
+    MapSamplingParameters sampling{*this};
     KernelParameters kernel{*this};
     MomentParameters moments{*this, MomentFormat::Float32, DepthSign::Unsigned};
     MinimumVariance minimumVariance{*this};
@@ -22,11 +23,12 @@ struct Parameters : ParameterSet {
 class Vsm final : public Technique {
 public:
     ParameterSet& parameters() override { return parameters_; }
-    std::optional<TextureReads> readsPerPixel() const override { return TextureReads{4, 4}; }
+    std::optional<TextureReads> readsPerPixel() const override { return parameters_.sampling.reads(); }
+    std::span<const ProbePlot> probePlots() const override { return kernelPlots(); }
     Image build(Flow& flow, Scope scope, const Inputs& inputs) const override {
         const Parameters& p = parameters_;
-        const MomentMap map =
-            drawMomentMap(flow, scope, inputs, describePowers(2, p.map.describe(), p.kernel, p.moments));
+        const MomentMap map = drawMomentMap(
+            flow, scope, inputs, describePowers(2, p.map.describe(), p.sampling.describe(), p.kernel, p.moments));
         return resolveMoments(flow, scope, inputs, "techniques/vsm.glsl", map, lookupOfPowers(2, p.moments), p);
     }
 

@@ -6,6 +6,8 @@
 uniform sampler2DMS source;
 #elif defined(ARRAY)
 uniform sampler2DArray source;
+#elif defined(WHOLE)
+uniform usampler2D source;
 #else
 uniform sampler2D source;
 #endif
@@ -16,7 +18,7 @@ vec4 sourceTexel(ivec4 place, ivec2 texel)
 #ifdef ARRAY
     return texelFetch(source, ivec3(fromBelow, place.x), place.y);
 #else
-    return texelFetch(source, fromBelow, place.y);
+    return vec4(texelFetch(source, fromBelow, place.y));
 #endif
 }
 

@@ -9,6 +9,25 @@ vec2 referenceFromLight(vec3 positionLight, vec2 s, float f, bool directional)
     return directional ? xy + s * (d - f) : s + (xy - s) * (f / d);
 }
 
+// How that place moves with P.
+vec2 referenceStep(vec3 positionLight, vec3 step, vec2 s, float f, bool directional)
+{
+    float d = -positionLight.z;
+    vec2 across = vec2(step.x, step.y);
+    vec2 xy = vec2(positionLight.x, positionLight.y);
+    return directional ? across - s * step.z : (across + (xy - s) * (step.z / d)) * (f / d);
+}
+
+// From where a pixel's ray, eye + depth · ray, meets a plane of normal n to where the next pixel's does. Where the view grazes
+// the plane a step is cut to the depth's.
+vec3 stepAlongPlane(vec3 eyeStep, vec3 rayStep, float depth, vec3 ray, vec3 n)
+{
+    vec3 across = eyeStep + depth * rayStep;
+    float facing = dot(n, ray);
+    float along = abs(facing) > 1e-6f ? clamp(-dot(n, across) / facing, -depth, depth) : 0.0f;
+    return across + along * ray;
+}
+
 // Half size, on the reference plane, of the region through which a receiver at depth d_r sees the light of half size r
 // when the blockers lie at depth d_b. With d_b the mean blocker depth this is the penumbra's (Fernando 2005, Scherzer
 // 2009 eq. 6: w = r (d_r − d_b) / d_b on the receiver, times f / d_r); with d_b the nearest depth in the map it is the

@@ -19,6 +19,24 @@ float varianceBound(vec2 b, float z_f, float leastVariance)
     return gap * gap / fma(gap, gap, variance);
 }
 
+// What lies in front of a fragment: the share ψ of the depths, and ψ times their mean.
+struct InFront {
+    float psi;
+    float moment;
+};
+
+// By the distribution of Cantelli's inequality: an atom at the fragment and one in front of it.
+InFront varianceInFront(vec2 b, float z_f, float leastVariance)
+{
+    float variance = max(fma(-b.x, b.x, b.y), leastVariance);
+    float gap = max(z_f - b.x, 0.0f);
+    float all = fma(gap, gap, variance);
+    InFront f;
+    f.psi = gap * gap / all;
+    f.moment = gap * fma(gap, b.x, -variance) / all;
+    return f;
+}
+
 // The same where depth is warped by a function that grows with it so fast that its square may be as large as a float can be,
 // or as small: all is scaled by w, the fragment's warped depth, or the mean. The deviation is at least so many w.
 float warpedVarianceBound(vec2 b, float w, float leastDeviation)
@@ -99,23 +117,39 @@ ThreeAtoms threeAtoms(Standardised s, float v)
     return a;
 }
 
-// What lies in front of v: nothing, the lowest atom, or both others.
-float weightInFront(ThreeAtoms a)
+// What lies in front of v: nothing, the lowest atom, or both others. Weight times place stays finite where the atom does not.
+InFront inFrontOf(ThreeAtoms a)
 {
     bool farIsLowest = a.perFar < 0.0f;
     bool none = farIsLowest ? a.v * a.perFar >= 1.0f : a.v <= a.near;
     bool both = farIsLowest ? a.v > a.near : a.v * a.perFar > 1.0f;
-    float lowest = farIsLowest ? -a.perFar * fma(a.others, a.near, a.weight * a.v)
-                               : fma(a.weight * a.v, a.perFar, a.others);
-    float psi = none ? 0.0f : both ? a.others : lowest / fma(-a.near, a.perFar, 1.0f);
-    return psi > 0.0f ? min(psi, 1.0f) : 0.0f; // 0 for NaN
+    float apart = fma(-a.near, a.perFar, 1.0f);
+    float far = -fma(a.others, a.near, a.weight * a.v) / apart; // its weight times its place; the mean of all three is 0
+    float near = fma(a.weight * a.v, a.perFar, a.others) / apart; // its weight
+    float psi = none ? 0.0f : both ? a.others : farIsLowest ? a.perFar * far : near;
+    InFront f;
+    f.psi = psi > 0.0f ? min(psi, 1.0f) : 0.0f; // 0 for NaN
+    f.moment = both ? -a.weight * a.v : farIsLowest ? far : near * a.near;
+    return f;
 }
+
+float weightInFront(ThreeAtoms a) { return inFrontOf(a).psi; }
 
 // Hamburger's moment problem (Peters and Klein 2015, algorithm 3): the least ψ of depths anywhere on the real line.
 float hamburgerBound(vec4 b, float z_f, DepthRange range)
 {
     Standardised s = standardised(b, range);
     return weightInFront(threeAtoms(s, (z_f - s.mean) * s.perSigma));
+}
+
+InFront hamburgerInFront(vec4 b, float z_f, DepthRange range)
+{
+    Standardised s = standardised(b, range);
+    InFront f = inFrontOf(threeAtoms(s, (z_f - s.mean) * s.perSigma));
+    // Between the near end and the fragment, whatever rounding says; 0 for NaN.
+    float moment = fma(f.psi, s.mean, f.moment / s.perSigma);
+    f.moment = f.psi > 0.0f ? clamp(moment, f.psi * range.low, f.psi * z_f) : 0.0f;
+    return f;
 }
 
 // E (v − p)(v − q)(v − r)

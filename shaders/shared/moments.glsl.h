@@ -2,6 +2,7 @@
 // What both sides know of a moment map. Compiled by C++ (renderer/shadow_map/moment_map.h) and by GLSL; rows of 16 bytes.
 
 const int mostKernel = 63; // texels
+const int probeColumns = 256;
 
 // A pass that filters along rows or columns.
 struct MomentFilterBlock {
@@ -19,5 +20,6 @@ struct MomentLookupBlock {
     vec4 depth_exponents; // as in MomentFilterBlock
     vec4 range;           // DepthRange of lib/moments.glsl
     vec4 border_perTexel; // x: texels by which the map begins before the shadow map, y: 1 / texels along a side
+    ivec4 probed;         // xy: the pixel that is looked at closely, z: texels on either side of the kernel's centre
     vec4 weights[8];      // of the kernel's centre, of those beside it ..., four a vector
 };

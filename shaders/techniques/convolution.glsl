@@ -12,6 +12,6 @@ void main()
     float series = 0.5;
     int layers = m.known ? 0 : (terms + 1) / 2;
     for (int layer = 0; layer < layers; ++layer)
-        series += squareWaveAt(momentsAt(m.place, layer), t, layer, terms, attenuation);
+        series += squareWaveAt(momentsAt(m, layer), t, layer, terms, attenuation);
     writeMomentShadow(r, m, 1.0 - clamp((series + lookup.range.y) * lookup.range.z, 0.0, 1.0));
 }

@@ -6,7 +6,7 @@ void main()
 {
     Receiver r = findReceiver(normalOffset);
     MomentLookup m = findMoments(r, depthBias, slopeBias);
-    vec4 b = momentsAt(m.place);
+    vec4 b = momentsAt(m);
     float x = clamp(m.depth, -1.0, 1.0);
     vec2 c = lookup.depth_exponents.zw;
     vec2 deviation = 2.0 * minimumDeviation * c; // of a warp, relative to it

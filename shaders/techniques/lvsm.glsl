@@ -15,7 +15,7 @@ void main()
     float psi = 0.0;
     int pairs = m.known ? 0 : (layers + 1) / 2;
     for (int pair = 0; pair < pairs; ++pair) {
-        vec4 b = momentsAt(m.place, pair);
+        vec4 b = momentsAt(m, pair);
         vec4 own = slicesOf(m.depth, pair, count, overlap);
         vec2 bounds = vec2(varianceBound(b.xy, own.x, least), varianceBound(b.zw, own.z, least));
         vec2 beyond = vec2(m.depth * count) - vec2(2 * pair + 1, 2 * pair + 2); // the far ends, without the overlap

@@ -6,5 +6,5 @@ void main()
 {
     Receiver r = findReceiver(normalOffset);
     MomentLookup m = findMoments(r, depthBias, slopeBias);
-    writeMomentShadow(r, m, hausdorffBound(momentsAt(m.place), m.depth, mappedRange()));
+    writeMomentShadow(r, m, hausdorffBound(momentsAt(m), m.depth, mappedRange()));
 }

@@ -7,5 +7,5 @@ void main()
 {
     Receiver r = findReceiver(normalOffset);
     MomentLookup m = findMoments(r, depthBias, slopeBias);
-    writeMomentShadow(r, m, trigonometricBound(momentsAt(m.place), m.depth, lookup.range.w));
+    writeMomentShadow(r, m, trigonometricBound(momentsAt(m), m.depth, lookup.range.w));
 }

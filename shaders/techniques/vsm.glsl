@@ -7,6 +7,6 @@ void main()
     Receiver r = findReceiver(normalOffset);
     MomentLookup m = findMoments(r, depthBias, slopeBias);
     float unit = lookup.depth_exponents.x; // of depth, in depth ranges
-    float psi = varianceBound(momentsAt(m.place).xy, m.depth, max(minimumVariance * unit * unit, 1e-12));
+    float psi = varianceBound(momentsAt(m).xy, m.depth, max(minimumVariance * unit * unit, 1e-12));
     writeMomentShadow(r, m, withoutBleeding(psi, bleedingReduction));
 }

@@ -187,7 +187,7 @@ TEST_CASE("a followed pixel tells its tests, which add up to what is shown, and 
     renderer().reset();
     for (int i = 0; i < 3; ++i) (void)look();
     CHECK(probe.samples().size() == 3);
-    const std::vector<float>& around = probe.around();
+    const std::vector<float>& around = probe.row();
     REQUIRE(around.size() == 3 * 64);
     int asked = 0, counted = 0;
     for (size_t i = 0; i < around.size(); i += 3) asked += around[i + 2] >= 0, counted += around[i + 2] > 0;

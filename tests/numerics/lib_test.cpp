@@ -37,6 +37,37 @@ TEST_CASE("a point's place on the reference plane is where its ray from the ligh
     }
 }
 
+TEST_CASE("the step from a pixel to the next is where its ray meets the plane, on the reference plane too") {
+    using glm::dvec2;
+    using glm::dvec3;
+    std::mt19937 random(3);
+    std::uniform_real_distribution<double> unit(-1, 1);
+    for (int round = 0; round < 200; ++round) {
+        const bool directional = round % 2 == 0, parallel = round % 3 == 0;
+        const dvec3 eye(unit(random), unit(random), 6),
+            n = glm::normalize(dvec3(0.3 * unit(random), 0.3 * unit(random), 1));
+        const dvec3 ray(parallel ? 0.0 : 0.3 * unit(random), 0.1, -1);
+        const dvec3 eyeStep = parallel ? dvec3(0.01, 0, 0.002) : dvec3(0);
+        const dvec3 rayStep = parallel ? dvec3(0) : dvec3(0.001, 0.0002, 0);
+        const double depth = 9;
+        const dvec3 p = eye + depth * ray;
+        const dvec2 s(0.2 * unit(random), 0.2 * unit(random));
+        const double f = 12;
+        // Half a pixel to either side.
+        const auto beside = [&](double h) {
+            const dvec3 from = eye + h * eyeStep, along = ray + h * rayStep;
+            return from + along * (glm::dot(n, p - from) / glm::dot(n, along));
+        };
+        const dvec3 step = f64::stepAlongPlane(eyeStep, rayStep, depth, ray, n);
+        const dvec3 difference = beside(0.5) - beside(-0.5);
+        CAPTURE(round);
+        CHECK(glm::length(step - difference) < 1e-4 * glm::length(difference));
+        const dvec2 place = f64::referenceFromLight(beside(0.5), s, f, directional) -
+                            f64::referenceFromLight(beside(-0.5), s, f, directional);
+        CHECK(glm::length(f64::referenceStep(p, step, s, f, directional) - place) < 1e-3 * glm::length(place) + 1e-9);
+    }
+}
+
 TEST_CASE("penumbra and search region have the golden sizes") {
     // algorithms of PCSS on the near plane n: search r (z_r − n) / (z_r W), filter q n / (z_r W), both in uv. On a
     // reference plane f the window is W f / n wide, so uv = size / (W f / n).

@@ -412,6 +412,107 @@ TEST_CASE("variance and warped variance bounds are Cantelli's inequality") {
                 }
 }
 
+TEST_CASE("algorithm 2 is Cantelli's inequality for two moments, algorithm 3 for four, and ours for six") {
+    // For any even number of moments, with all digits: the monic orthogonal polynomials P_j by Stieltjes' procedure on
+    // the depths themselves; K(u) = Σ P_j(z_f) P_j(u) / D_j is 0 at the other atoms, and 1 / K(u, u) is what one
+    // weighs.
+    using real = long double;
+    const auto algorithm2 = [](const Distribution& d, int m, double fragment) {
+        const int n = m / 2;
+        std::vector<real> a, norms;
+        const auto polynomials = [&](real u) {
+            std::vector<real> p{1};
+            for (int j = 0; j < static_cast<int>(a.size()) && j < n; ++j) {
+                const auto i = static_cast<size_t>(j);
+                p.push_back((u - a[i]) * p[i] - (j > 0 ? norms[i] / norms[i - 1] * p[i - 1] : 0));
+            }
+            return p;
+        };
+        for (int j = 0; j <= n; ++j) {
+            real norm = 0, first = 0;
+            for (const Distribution::Atom& atom : d.atoms) {
+                const real p = polynomials(atom.z).back();
+                norm += atom.weight * p * p, first += atom.weight * p * p * atom.z;
+            }
+            norms.push_back(norm);
+            a.push_back(first / norm);
+        }
+        const auto kernel = [&](real u, real v) {
+            const std::vector<real> p = polynomials(u), q = polynomials(v);
+            real sum = 0;
+            for (size_t j = 0; j <= static_cast<size_t>(n); ++j) sum += p[j] * q[j] / norms[j];
+            return sum;
+        };
+        // Roots before the fragment are looked for in 1 / (z_f − u), which has no far end.
+        real psi = 0;
+        constexpr int steps = 20000;
+        const auto place = [&](int i) { return fragment - (1 / (real(i) / steps) - 1); };
+        const auto atRoot = [&](real low, real high) {
+            for (int i = 0; i < 80; ++i) {
+                const real middle = (low + high) / 2;
+                (kernel(fragment, low) < 0) == (kernel(fragment, middle) < 0) ? low = middle : high = middle;
+            }
+            return 1 / kernel(low, low);
+        };
+        for (int i = 1; i < steps; ++i)
+            if ((kernel(fragment, place(i)) < 0) != (kernel(fragment, place(i + 1)) < 0))
+                psi += atRoot(place(i), place(i + 1));
+        return static_cast<double>(psi);
+    };
+    Distributions random(11);
+    for (int round = 0; round < 12; ++round) {
+        Distribution d;
+        for (int i = 0; i < 6; ++i) d.atoms.push_back({(i + random.unit()) / 6, (1 + random.unit()) / 9});
+        double sum = 0;
+        for (const Distribution::Atom& atom : d.atoms) sum += atom.weight;
+        for (Distribution::Atom& atom : d.atoms) atom.weight /= sum;
+        const double z_f = 0.1 + 0.8 * random.unit();
+        const dvec4 b = d.powers();
+        CAPTURE(round, z_f);
+        CHECK(algorithm2(d, 2, z_f) == Approx(f64::varianceBound(dvec2(b), z_f, 0.0)).margin(1e-9));
+        CHECK(algorithm2(d, 4, z_f) == Approx(f64::hamburgerBound(b, z_f, exact)).margin(1e-6));
+        const double fifth = d.mean([](double z) { return std::pow(z, 5); });
+        const double sixth = d.mean([](double z) { return std::pow(z, 6); });
+        CHECK(algorithm2(d, 6, z_f) ==
+              Approx(f64::sixMomentsBound({b.x, b.y, b.z, b.w, fifth, sixth}, z_f, glm::dvec3(0.0))).margin(1e-4));
+    }
+}
+
+TEST_CASE("what lies in front of a fragment is told with its mean depth where few surfaces make it up") {
+    // Two surfaces are known from two moments where the fragment lies on the farther one, three from four moments.
+    Distributions random(5);
+    const auto check = [](const auto& found, double psi, double moment, double margin) {
+        CHECK(found.psi == Approx(psi).margin(margin));
+        CHECK(found.moment == Approx(moment).margin(margin));
+    };
+    for (int round = 0; round < 300; ++round) {
+        std::vector<double> z{random.unit(), random.unit(), random.unit()},
+            w{random.unit(), random.unit(), random.unit()};
+        std::sort(z.begin(), z.end());
+        if (z[1] - z[0] < 0.05 || z[2] - z[1] < 0.05) continue;
+        for (double& weight : w) weight = 0.1 + weight;
+        const double two = w[0] + w[1], three = two + w[2];
+        const Distribution pair{{{z[0], w[0] / two}, {z[1], w[1] / two}}};
+        const dvec4 p = pair.powers();
+        check(f64::varianceInFront(dvec2(p), z[1], 0.0), w[0] / two, w[0] * z[0] / two, 1e-9);
+        const Distribution triple{{{z[0], w[0] / three}, {z[1], w[1] / three}, {z[2], w[2] / three}}};
+        const dvec4 b = triple.powers();
+        check(f64::hamburgerInFront(b, z[2], exact), two / three, (w[0] * z[0] + w[1] * z[1]) / three, 1e-6);
+        check(f64::hamburgerInFront(b, z[1], exact), w[0] / three, w[0] * z[0] / three, 1e-6);
+        check(f64::hamburgerInFront(b, z[0], exact), 0, 0, 1e-6);
+    }
+    // Variance soft shadow mapping: z_occ = (z_avg − P t) / (1 − P); half of a window at 0.3, a quarter, two blockers,
+    // a receiver whose fragment is biased.
+    const auto occluder = [](const Distribution& d, double t) {
+        const f64::InFront f = f64::varianceInFront(dvec2(d.powers()), t, 0.0);
+        return f.moment / f.psi;
+    };
+    CHECK(occluder({{{0.3, 0.5}, {0.8, 0.5}}}, 0.8) == Approx(0.3));
+    CHECK(occluder({{{0.3, 0.5}, {0.8, 0.5}}}, 0.79) == Approx(0.289583333333));
+    CHECK(occluder({{{0.3, 0.25}, {0.8, 0.75}}}, 0.8) == Approx(0.3));
+    CHECK(occluder({{{0.2, 0.25}, {0.4, 0.25}, {0.8, 0.5}}}, 0.8) == Approx(0.28));
+}
+
 TEST_CASE("where an atom of Hamburger's bound passes through infinity it neither jumps nor loses digits") {
     // Even over [0, 1]; c3 = 0 at the roots of 6z² − 6z + 1.
     const dvec4 b(0.5, 1.0 / 3, 0.25, 0.2);

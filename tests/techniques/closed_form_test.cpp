@@ -63,6 +63,18 @@ TEST_CASE("PCSS with 64 and 64 taps meets the half plane under a square light") 
     }
 }
 
+TEST_CASE("soft variance and moments meet the half plane under a square light, in however many cells") {
+    for (const char* technique : {"vsm-soft", "msm-soft"})
+        for (const char* cells : {"1", "3"}) {
+            Session s = halfPlane(technique);
+            s.techniques.assign(std::string("cells=") + cells);
+            const Error error = errorOf(s);
+            CAPTURE(technique, cells, error.rmse, error.outside);
+            CHECK(error.rmse < 0.02);
+            CHECK(error.outside < 0.02);
+        }
+}
+
 TEST_CASE("more PCSS taps are closer to the truth, and 16 are already near") {
     double before = 1;
     for (const char* taps : {"4", "16", "64"}) {

@@ -27,6 +27,16 @@ std::shared_ptr<const Scene> boxesOverFloor() {
 
 bool hasHistory() { return !renderer().flow().pasts().empty(); } // what was drawn last
 
+// ψ; empty where the driver has not that many samples a texel and refused them by their number.
+std::vector<float> drawIfOffered(const Session& s) {
+    try {
+        return draw(s).psi.values;
+    } catch (const InputError& error) {
+        if (std::string_view(error.what()).find("this driver offers") == std::string_view::npos) throw;
+        return {};
+    }
+}
+
 // Finite and in [0, 1] everywhere, and silence from the driver.
 void checkSane(const Session& s) {
     const auto check = [](const std::vector<float>& values) {
@@ -41,7 +51,7 @@ void checkSane(const Session& s) {
         CHECK(low >= 0);
         CHECK(high <= 1);
     };
-    check(draw(s).psi.values);
+    check(drawIfOffered(s));
     if (hasHistory()) {
         renderer().render(s);
         check(renderer().read(renderer().shadow()).values);
@@ -51,7 +61,7 @@ void checkSane(const Session& s) {
 
 // ψ of a first frame. Of a technique with a history, of many: camera, things and light move, and then come to rest.
 std::vector<float> shown(Session& s) {
-    std::vector<float> values = draw(s).psi.values;
+    std::vector<float> values = drawIfOffered(s);
     if (!hasHistory()) return values;
     const Camera camera = s.camera;
     const AreaLight light = s.light;
@@ -306,9 +316,10 @@ TEST_CASE("a parameter says that it is without effect exactly when no value of i
             bool effect = false;
             for (const double share : {0.0, 0.1, 0.5, 1.0}) {
                 const double value = p.nearest(p.spec().min + share * (p.spec().max - p.spec().min));
-                if (tooLarge(p, value)) continue;
+                if (effect || tooLarge(p, value)) continue;
                 p.set(value);
-                effect = effect || shown(s) != plain;
+                const std::vector<float> changed = shown(s);
+                effect = !changed.empty() && changed != plain;
             }
             return effect;
         };
@@ -323,6 +334,7 @@ TEST_CASE("a parameter says that it is without effect exactly when no value of i
                     choice->set(value);
                     CAPTURE(choice->qualifiedName(), choice->text());
                     const std::vector<float> chosen = shown(s);
+                    if (chosen.empty()) continue;
                     for (size_t i = 0; i < set.all().size(); ++i) {
                         Parameter* p = set.all()[i];
                         if (!p->spec().active || (history && p->active() == usually[i])) continue;

@@ -153,3 +153,53 @@ TEST_CASE("two surfaces give every filterable map its golden ψ") {
         }
     CHECK(driverMessages().empty());
 }
+
+TEST_CASE("a summed-area table is exact to the last of its 32 bits") {
+    Session s = session(step(0.9, 4.0f / 128), "msm-soft");
+    for (const char* setting : {"map-size=200", "widest-window=64", "cells=1"}) s.techniques.assign(setting);
+    (void)draw(s);
+    const Flow& flow = renderer().flow();
+    constexpr size_t side = 200;
+    std::vector<uint32_t> sums(4 * side * side);
+    const Texture& table = renderer().runner().texture(flow, *flow.find("msm-soft.summed-area"));
+    REQUIRE(table.extent() == Extent{side, side});
+    glGetTextureImage(table.name(), 0, GL_RGBA_INTEGER, GL_UNSIGNED_INT, static_cast<GLsizei>(4 * sums.size()),
+                      sums.data());
+    const Renderer::Pixels depth = renderer().read(*flow.find("msm-soft.shadow-map"));
+    const auto sum = [&](size_t x, size_t y, size_t k) {
+        return x == 0 || y == 0 ? 0 : sums[4 * ((y - 1) * side + x - 1) + k];
+    };
+    // Each texel again from four sums; the whole sum wraps around many times.
+    const double levels = 4294967295.0 / (65 * 65);
+    uint64_t all = 0;
+    double worst = 0;
+    for (size_t y = 0; y < side; ++y)
+        for (size_t x = 0; x < side; ++x) {
+            const double z = 2 * double(depth.values[(side - 1 - y) * side + x]) - 1;
+            const double root3 = std::sqrt(3.0);
+            const double stored[] = {0.5 + 1.5 * z - 2 * z * z * z, 4 * (z * z - z * z * z * z),
+                                     0.5 + root3 / 2 * z - 2 * root3 / 9 * z * z * z, 0.5 * (z * z + z * z * z * z)};
+            for (size_t k = 0; k < 4; ++k) {
+                const uint32_t texel = sum(x + 1, y + 1, k) - sum(x, y + 1, k) - sum(x + 1, y, k) + sum(x, y, k);
+                worst = std::max(worst, std::abs(texel - std::clamp(stored[k], 0.0, 1.0) * std::floor(levels)));
+                all += k == 3 ? texel : 0;
+            }
+        }
+    CHECK(worst < 1.5);
+    CHECK(all > uint64_t(4) << 32);
+    CHECK(driverMessages().empty());
+}
+
+TEST_CASE("a mip chain and several depths a texel change nothing where a map is flat, and average where it is not") {
+    const auto psi = [](std::string_view technique, std::vector<std::string> settings) {
+        settings.push_back("format=32f");
+        return psiAtStep(technique, 0.9, settings);
+    };
+    for (const char* technique : {"vsm", "msm-hausdorff"}) {
+        CAPTURE(technique);
+        const float plain = psi(technique, {});
+        CHECK(psi(technique, {"samples=4"}) == Approx(plain).margin(0.02));
+        CHECK(psi(technique, {"mipmaps=true"}) == Approx(plain).margin(0.02));
+        CHECK(psi(technique, {"mipmaps=true", "anisotropy=16"}) == Approx(plain).margin(0.02));
+    }
+}

@@ -253,7 +253,7 @@ TEST_CASE("a map may be a float image, have samples, and show the surfaces behin
         runner.run(bench.flow, Timing::Off);
         bench.flow.begin();
         (void)drawShadowMap(bench.flow, {.owner = "demo"}, inputs, {.size = 64, .samples = 3});
-        CHECK_THROWS_WITH(runner.run(bench.flow, Timing::Off), contains("demo.shadow-map: 3 samples a texel"));
+        CHECK_THROWS_WITH(runner.run(bench.flow, Timing::Off), contains("demo.shadow-map-samples: 3 samples a texel"));
     }
     CHECK(driverMessages().empty());
 }
