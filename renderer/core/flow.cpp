@@ -128,7 +128,8 @@ Flow::Outputs Flow::pass(Scope scope, const PassSpec& spec) {
     for (const ImageSpec& image : spec.writes) {
         const int label = intern(scope, image.name);
         for (const ImageNode& other : images_)
-            ensure(other.label != label || (repeat_ != 0 && other.repeat != repeat_), "two images have one label");
+            ensure(other.label != label || (repeat_ != 0 && other.repeat != 0 && other.repeat != repeat_),
+                   "two images have one label");
         const bool kept = std::find(kept_.begin(), kept_.end(), label) != kept_.end();
         ensure(!kept || repeat_ <= 1, "an image of a repeat cannot be kept");
         images_.push_back({image, label, static_cast<int>(passes_.size()), repeat_, kept});

@@ -47,7 +47,7 @@ struct ShadowMapParameters : ParameterGroup {
     struct Options {
         Faces faces = Faces::Casting; // at first
         Fit fit = Fit::Scene;
-        double largest = 16384; // texels along a side
+        double size = 1024, largest = 16384; // texels along a side
     };
     explicit ShadowMapParameters(ParameterSet& s) : ShadowMapParameters(s, Options{}) {}
     ShadowMapParameters(ParameterSet& s, const Options& options)
@@ -55,7 +55,7 @@ struct ShadowMapParameters : ParameterGroup {
         , size{set,
                {.id = "map-size",
                 .label = "Map size",
-                .value = 1024,
+                .value = options.size,
                 .min = 16,
                 .max = options.largest,
                 .unit = Unit::Texels,

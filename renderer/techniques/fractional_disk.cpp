@@ -482,7 +482,10 @@ private:
         const bool floods = parameters_.preparation == Preparation::Flood;
         decltype(PassSpec::writes) found{{"edges", Format::RGBA32F, extent, edgeChannels}};
         Defines finds;
-        if (floods) found.push_back(flood), finds.push_back({"SEEDS"});
+        if (floods) {
+            found.push_back({"seeds", flood.format, extent, floodChannels});
+            finds.push_back({"SEEDS"});
+        }
         const Flow::Outputs first =
             pass("edges", "techniques/fractional_disk_edges.glsl", finds, {{"shadowMap", map.depth}}, found);
         const Image edges = first[0];

@@ -8,7 +8,7 @@
 uniform sampler2D shadowMap;
 uniform writeonly image2D edges; // depth, least depth of the neighbourhood, 1 on an edge; elsewhere depth, 1, 0
 #ifdef SEEDS
-uniform writeonly image2D flood; // as jump flooding starts
+uniform writeonly image2D seeds; // what jump flooding starts with
 #endif
 
 float at(ivec2 texel) { return texelFetch(shadowMap, clamp(texel, ivec2(0), textureSize(shadowMap, 0) - 1), 0).x; }
@@ -26,6 +26,6 @@ void main()
     bool found = edge && least < 1.0;
     imageStore(edges, t, found ? vec4(centre, least, 1.0, 0.0) : vec4(centre, 1.0, 0.0, 0.0));
 #ifdef SEEDS
-    imageStore(flood, t, vec4(found ? 0.0 : floodUnknown));
+    imageStore(seeds, t, vec4(found ? 0.0 : floodUnknown));
 #endif
 }
