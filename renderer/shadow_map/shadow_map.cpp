@@ -209,9 +209,9 @@ bool shadesOthers(const Occluder& caster, const Bounds& box, std::span<const Occ
 MapFit fitMap(const AreaLight& light, std::span<const Occluder> occluders, const mat4& fromWorld, vec2 half,
               const View* view) {
     const bool directional = light.shape == LightShape::Directional;
-    size_t boxes = 0;
-    for (const Occluder& occluder : occluders) boxes += boxesOf(occluder).size();
-    const bool few = boxes <= mostCompared;
+    size_t boxes = 0, plain = 0;
+    for (const Occluder& occluder : occluders) boxes += boxesOf(occluder).size(), plain += !occluder.shadesItself;
+    const bool few = boxes * plain <= mostCompared;
     const auto eachBox = [&](auto&& take) {
         for (const Occluder& occluder : occluders)
             for (const Bounds& box : boxesOf(occluder)) take(cornersOf(box, fromWorld), occluder, box);
