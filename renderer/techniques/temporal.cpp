@@ -92,7 +92,7 @@ struct FilterParameters : ParameterGroup {
     Real radiusScale{set,
                      {.id = "radius-scale",
                       .label = "Radius scale",
-                      .value = 0.5,
+                      .value = 0.25,
                       .min = 0,
                       .max = 4,
                       .source = "Scherzer 2009 eq. 6; thesis 5.6, 5.9 to 5.12",
