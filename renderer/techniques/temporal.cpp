@@ -419,7 +419,7 @@ struct Parameters : ParameterSet {
                    .help = "How much larger than the picture the shadow buffer is, so that what comes into view has a "
                            "history."}};
     FilterParameters filter{*this};
-    ShadowMapParameters map{*this, {.fit = Fit::View}};
+    ShadowMapParameters map{*this, {.fit = Fit::View, .size = 1536}};
     ReceiverPlane receiverPlane{*this};
     BiasParameters bias{*this, {.slope = 0, .normalOffset = 0.25}};
 };
