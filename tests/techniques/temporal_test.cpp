@@ -368,3 +368,66 @@ TEST_CASE("100,000 frames do not drift from the mean of the same maps", "[.][lon
         CHECK(last[i].x / last[i].y == Approx(mean[i]).margin(3 * std::sqrt(0.25 / 4096)));
     }
 }
+
+TEST_CASE(
+    "in a pan the columns that have just come into view are hardly worse than those beside them, thanks to overscan") {
+    // Under slats, so that penumbrae are everywhere, straight down: a shift of the eye is one of the picture.
+    SceneBuilder builder;
+    builder.floor(4);
+    for (float x = -3; x < 3; x += 0.4f) builder.box({x, 1, -2}, {x + 0.15f, 1.02f, 2});
+    Bench b(builder.build());
+    b.s.size = {640, 24};
+    const float pixel = 0.006f; // on the floor [m]
+    const float fovY = glm::degrees(2 * std::atan(12 * pixel / 0.9f));
+    const auto at = [&](int frame) {
+        const float x = pixel * static_cast<float>(frame);
+        return Camera{{x, 0.9f, 0}, {x, 0, 0}, {0, 0, -1}, fovY};
+    };
+    constexpr int frames[] = {30, 37, 44, 51};
+    std::vector<std::vector<float>> truths;
+    for (const int frame : frames) {
+        b.s.camera = at(frame);
+        b.s.techniques.parametersOf("light-sampling").at("samples").set(256);
+        truths.push_back(b.of("light-sampling"));
+    }
+    // RMSE of the eight columns at the edge, as a multiple of that of the eight beside them.
+    const auto outerToInner = [&](const char* overscan) {
+        b.set("overscan", overscan);
+        renderer().reset();
+        double outer = 0, inner = 0;
+        for (int frame = 0, k = 0; k < 4; ++frame) {
+            b.s.camera = at(frame);
+            const std::vector<float> psi = b.frame();
+            if (frame != frames[k]) continue;
+            for (size_t i = 0; i < psi.size(); ++i) {
+                const size_t fromEdge = 639 - i % 640;
+                const double e = psi[i] - truths[size_t(k)][i];
+                if (fromEdge < 16) (fromEdge < 8 ? outer : inner) += e * e;
+            }
+            ++k;
+        }
+        INFO(overscan << " %: " << std::sqrt(outer) << " against " << std::sqrt(inner));
+        CHECK(inner > 0);
+        return std::sqrt(outer / inner);
+    };
+    CHECK(outerToInner("5") < 1.5);
+    b.samplesAlone(); // the estimate and the filter help the first frames as well
+    CHECK(outerToInner("5") < 1.5);
+    CHECK(outerToInner("0") > 1.5);
+}
+
+TEST_CASE(
+    "at 840x630 the two shadow buffers of half floats take 8.5 MB, and the paper keeps nothing else of that size") {
+    Bench b;
+    b.s.size = {800, 600};
+    b.set("format", "16f");
+    renderer().render(b.s);
+    const Flow& flow = renderer().flow();
+    uint64_t kept = 0;
+    for (const Flow::PastNode& past : flow.pasts()) {
+        CHECK(flow.label(past.label) == "temporal.shadow-buffer");
+        CHECK(past.spec.extent == Extent{840, 630});
+        kept += 2 * past.spec.bytes();
+    }
+    CHECK(kept == 8467200);
+}
