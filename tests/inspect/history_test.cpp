@@ -81,6 +81,7 @@ TEST_CASE("a frame drawn again is the same, and what was changed meanwhile leave
 TEST_CASE("images that explain change nothing of the picture, and tell what becomes of a history and why") {
     Bench b(boxOverFloor(), "temporal");
     b.set("overscan", "0");
+    b.set("radius-scale", "0.5");
     const std::vector<float> plain = b.frame();
     CHECK_FALSE(renderer().flow().find("temporal.state").has_value());
     renderer().inspect({.images = true});
@@ -184,6 +185,7 @@ TEST_CASE("a followed pixel tells its tests, which add up to what is shown, and 
 
     b.set("neighbourhood", "poisson");
     b.set("taps", "12");
+    b.set("radius-scale", "0.5");
     renderer().reset();
     for (int i = 0; i < 3; ++i) (void)look();
     CHECK(probe.samples().size() == 3);

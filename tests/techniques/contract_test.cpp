@@ -307,6 +307,7 @@ TEST_CASE("a parameter says that it is without effect exactly when no value of i
         const bool history = hasHistory();
         if (history) {
             s.scene = wavingScene(); // its board is open
+            s.light.size = {2, 2};   // penumbrae that neighbours fit into
             set.at("map-size").set(128);
         }
         std::vector<bool> usually;
