@@ -5,6 +5,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cerrno>
 #include <cstdlib>
 #include <optional>
@@ -88,9 +89,14 @@ std::string readFile(const fs::path& file, size_t limit) {
     if (S_ISDIR(status.st_mode)) refuse(file, "cannot be read", EISDIR);
     if (!S_ISREG(status.st_mode)) throw InputError(fmt::format("{}: is not a regular file", file.string()));
 
-    std::string bytes(limit + 1, '\0');
+    // A file may grow, and some say 0: the size told is only where to begin.
+    std::string bytes(std::min(limit, static_cast<size_t>(status.st_size)) + 1, '\0');
     size_t size = 0;
-    while (size < bytes.size()) {
+    for (;;) {
+        if (size == bytes.size()) {
+            if (size > limit) break;
+            bytes.resize(std::min(limit + 1, 2 * size));
+        }
         const ssize_t got = ::read(descriptor.get(), bytes.data() + size, bytes.size() - size);
         if (got < 0 && errno == EINTR) continue;
         if (got < 0) refuse(file, "cannot be read", errno);
