@@ -5,6 +5,7 @@
 #include "renderer/surfaces.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 namespace penumbra {
@@ -109,7 +110,8 @@ Frame buildFrame(Flow& flow, const Session& session, const SceneState& state, co
     const Shading shading{surfaces.colour, session.display.ambient, session.display.exposure};
     // Two techniques are instances a and b of one frame; what they need alike, such as the geometry buffer, is made
     // once.
-    const bool lit = session.display.show == Show::Lit;
+    const bool errorMap = session.comparing() && comparison.as == CompareAs::Error;
+    const bool lit = session.display.show == Show::Lit && !errorMap;
     const auto build = [&](const TechniqueShelf& shelf, std::string_view instance, const AreaLight& light,
                            const AreaLight* lastLight) {
         const Inputs inputs{view,
@@ -129,8 +131,9 @@ Frame buildFrame(Flow& flow, const Session& session, const SceneState& state, co
         shelf.parameters().refuseBeyondLimits();
         return shelf.technique().build(flow, {instance, shelf.card().id}, inputs);
     };
-    // ψ of every light that shines, each an instance of its own; without the others where only shadows are shown.
-    const auto buildAll = [&](const TechniqueShelf& shelf, std::span<const std::string_view> instances) {
+    using Instances = std::array<std::string_view, 1 + mostFurtherLights>;
+    // ψ of every light that shines, each an instance of its own; the others only where light is shown.
+    const auto buildAll = [&](const TechniqueShelf& shelf, const Instances& instances) {
         ShadowedLights all{{&session.light, build(shelf, instances[0], session.light, last ? &last->light : nullptr)}};
         for (size_t i = 0; lit && i < session.furtherLights.size(); ++i) {
             const auto& [light, on] = session.furtherLights[i];
@@ -141,9 +144,9 @@ Frame buildFrame(Flow& flow, const Session& session, const SceneState& state, co
         }
         return all;
     };
-    static constexpr std::string_view single[] = {"", "light-2", "light-3", "light-4"};
-    static constexpr std::string_view a[] = {"a", "a/light-2", "a/light-3", "a/light-4"};
-    static constexpr std::string_view b[] = {"b", "b/light-2", "b/light-3", "b/light-4"};
+    static constexpr Instances single{"", "light-2", "light-3", "light-4"};
+    static constexpr Instances a{"a", "a/light-2", "a/light-3", "a/light-4"};
+    static constexpr Instances b{"b", "b/light-2", "b/light-3", "b/light-4"};
     const ShadowedLights lights = buildAll(session.techniques, two ? a : single);
     const Image shadow = lights[0].shadow;
     ShadowedLights otherLights = lights; // what is compared with, where it is known
@@ -163,8 +166,7 @@ Frame buildFrame(Flow& flow, const Session& session, const SceneState& state, co
     const auto display = [&] {
         const Scope own{.instance = two ? "a" : "", .owner = {}};
         if (!other) return show(flow, session, seen(lights, own));
-        if (comparison.as == CompareAs::Error)
-            return show(flow, session, subtract(flow, surfaces, shadow, *other, !two));
+        if (errorMap) return show(flow, session, subtract(flow, surfaces, shadow, *other, !two));
         const Scope others = two ? Scope{.instance = "b", .owner = {}} : truthScope;
         if (comparison.as == CompareAs::Flip)
             return show(flow, session, comparison.exchanged ? seen(otherLights, others) : seen(lights, own));

@@ -93,10 +93,10 @@ AreaLight LightPanel::another(const Session& session, const SceneFacts& facts) {
     light.intensity *= furtherLightShare;
     LightDirection direction = lightDirection(light);
     direction.elevation = std::clamp(direction.elevation, -60.0f, 60.0f); // one overhead has nowhere to turn
-    do {
+    for (size_t i = 0; i == 0 || (i <= mostFurtherLights && shines(light)); ++i) {
         direction.azimuth = std::remainder(direction.azimuth + 100, 360.0f);
         setLightDirection(light, direction);
-    } while (shines(light));
+    }
     return light;
 }
 

@@ -11,7 +11,8 @@
 
 namespace penumbra {
 
-// What a session shows at this moment, as a still view of its own. Techniques have their defaults.
+// What a session shows at this moment, as a still view of its own, by the studied light alone. Techniques have their
+// defaults.
 Session stillView(const Session& session);
 
 class BackgroundMeasurement {

@@ -87,9 +87,9 @@ double planeDeviation(const ParameterSet& set) {
     return std::sqrt(gaussian.variance() + bilinear);
 }
 
-glm::vec2 depthScale(DepthSign sign) { return sign == DepthSign::Signed ? glm::vec2(2, -1) : glm::vec2(1, 0); }
-
 } // namespace
+
+glm::vec2 depthScale(DepthSign sign) { return sign == DepthSign::Signed ? glm::vec2(2, -1) : glm::vec2(1, 0); }
 
 MomentEncoding encodingOf(int count, MomentFormat format, DepthSign sign) {
     const bool isSigned = sign == DepthSign::Signed;
@@ -261,9 +261,7 @@ void probeKernel(Flow& flow, Scope scope, const Inputs& inputs, Constants consta
     const Extent row{probeColumns, 1};
     flow.pass(scope, {.stage = Stage::Resolve,
                       .name = "kernel-probe",
-                      .work = Compute{"moment_probe.glsl",
-                                      {{"DIRECTIONAL", inputs.light.shape == LightShape::Directional ? 1 : 0},
-                                       {"ROUND", inputs.light.shape == LightShape::Rectangle ? 0 : 1}}},
+                      .work = Compute{"moment_probe.glsl", resolveDefines(inputs.light)},
                       .reads = {{"depth", inputs.geometryBuffer.depth},
                                 {"normal", inputs.geometryBuffer.normal},
                                 {"shadowMap", depths}},

@@ -225,6 +225,9 @@ struct MomentMap {
 };
 MomentMap drawMomentMap(Flow& flow, Scope scope, const Inputs& inputs, const MomentMapDescription& description);
 
+// Map depth times x plus y is the depth whose powers are taken.
+glm::vec2 depthScale(DepthSign sign);
+
 // How the first two or four powers are stored: matrix · powers + offset, in [0, 1] for whole numbers.
 struct MomentEncoding {
     glm::dmat4 matrix{1};

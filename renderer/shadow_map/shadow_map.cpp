@@ -417,12 +417,14 @@ ResolveConstants resolveConstants(const Inputs& inputs, const LightViewBlock& li
     return constants;
 }
 
+Defines resolveDefines(const AreaLight& light) {
+    return {{"DIRECTIONAL", light.shape == LightShape::Directional ? 1 : 0},
+            {"ROUND", light.shape == LightShape::Rectangle ? 0 : 1}};
+}
+
 Flow::Outputs resolve(Flow& flow, Scope scope, const Inputs& inputs, const Resolver& resolver, const PassReads& reads,
                       const ParameterSet& parameters) {
-    Compute work{resolver.shader,
-                 {{"DIRECTIONAL", inputs.light.shape == LightShape::Directional ? 1 : 0},
-                  {"ROUND", inputs.light.shape == LightShape::Rectangle ? 0 : 1}},
-                 resolver.over};
+    Compute work{resolver.shader, resolveDefines(inputs.light), resolver.over};
     for (const Define& define : resolver.defines) work.defines.push_back(define);
     if (resolver.table > 0) work.defines.push_back({"TABLE", resolver.table});
     const glm::ivec2 size = resolver.withMargin ? inputs.view.size : inputs.pictureSize();

@@ -147,6 +147,19 @@ struct ReceiverPlane : Flag {
                         "kernels and penumbrae then need no more bias than narrow ones."}) {}
 };
 
+// For techniques that take the width of penumbrae from the light's size.
+struct LightScale : Real {
+    explicit LightScale(ParameterSet& s, std::string_view source = {})
+        : Real(s, {.id = "light-scale",
+                   .label = "Light scale",
+                   .value = 1,
+                   .min = 0,
+                   .max = 4,
+                   .source = source,
+                   .help = "Widens or narrows the penumbrae beyond what the light's size gives. 1 is the light itself; "
+                           "anything else departs from the truth."}) {}
+};
+
 // The projection of a map. The window and the depth range are fitted to casters and receivers as seen from the whole
 // light, so they are the same for every sample. Without a view it is fitted to the scene.
 LightViewBlock lightView(const AreaLight& light, std::span<const Occluder> occluders,
@@ -165,7 +178,8 @@ struct ShadowMap {
 inline constexpr Channel objectChannels[] = {{"object", "", "number of the thing that is seen, from 1"}};
 ShadowMap drawShadowMap(Flow& flow, Scope scope, const Inputs& inputs, const ShadowMapDescription& description);
 
-// The front of the constants of every pass that includes shaders/resolve.glsl.
+// What every shader that includes shaders/resolve.glsl is told, and the front of its constants.
+Defines resolveDefines(const AreaLight& light);
 struct ResolveConstants {
     ViewBlock view;
     LightViewBlock lightView;

@@ -9,7 +9,6 @@ namespace {
 
 constexpr MomentFormat stored = MomentFormat::Unorm16Optimised;
 constexpr DepthSign depthSign = DepthSign::Signed;
-constexpr glm::vec2 depth{2, -1};
 
 } // namespace
 
@@ -30,7 +29,7 @@ SummedArea drawSummedArea(Flow& flow, Scope scope, const Inputs& inputs, int cou
     const MomentEncoding encoding = encodingOf(count, stored, depthSign);
     const SummedAreaBlock block{.storedFromMoments = glm::mat4(encoding.matrix),
                                 .storedOffset = glm::vec4(encoding.offset),
-                                .depth_levels = glm::vec4(depth, windows.levels(), 0)};
+                                .depth_levels = glm::vec4(depthScale(depthSign), windows.levels(), 0)};
     const Format format = count == 2 ? Format::RG32UI : Format::RGBA32UI;
     const int size = map.size, runs = (size + runLength - 1) / runLength;
     const auto image = [&](std::string_view name, int width, int height) {
@@ -70,7 +69,7 @@ Image resolveSoft(Flow& flow, Scope scope, const Inputs& inputs, std::string_vie
                   {.momentsFromSum = powers.momentsFromStored / static_cast<float>(windows.levels()),
                    .momentsOffset = powers.momentsOffset,
                    .empty = powers.momentsFromStored * farthest + powers.momentsOffset,
-                   .depth = {depth, 0.5f * static_cast<float>(windows.widest), 0},
+                   .depth = {depthScale(depthSign), 0.5f * static_cast<float>(windows.widest), 0},
                    .range = powers.range}};
     return resolve(flow, scope, inputs, {.shader = shader, .constants = block}, {{"sums", table.sums}}, parameters);
 }

@@ -34,14 +34,7 @@ struct SoftMomentParameters : ParameterGroup {
                   .source = "Peters et al. 2017 (precision by kernel size)",
                   .help = "Wider windows are cut to this. A sum over the largest cell must fit 32 bits: the smaller "
                           "it is the more bits each texel has, and the less bias it needs."}}
-        , lightScale{set,
-                     {.id = "light-scale",
-                      .label = "Light scale",
-                      .value = 1,
-                      .min = 0,
-                      .max = 4,
-                      .help = "Widens or narrows the penumbrae beyond what the light's size gives. 1 is the light "
-                              "itself; anything else departs from the truth."}}
+        , lightScale(set)
         , planeBias{set,
                     {.id = "plane-bias",
                      .label = "Plane bias",
@@ -51,7 +44,8 @@ struct SoftMomentParameters : ParameterGroup {
                      .help = "Moves the receiver towards the light by so many standard deviations of its plane's depth "
                              "within a cell. Keeps lit slopes lit; what lies close above them casts less."}} {}
     Integer cells, widest;
-    Real lightScale, planeBias;
+    LightScale lightScale;
+    Real planeBias;
     End end{set};
 
     // Steps between the ends of a stored moment's range, so that no box within a cell sums up to 2³².

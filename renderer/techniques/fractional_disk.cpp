@@ -197,15 +197,7 @@ struct Parameters : ParameterSet {
                                  "scene.",
                          .active = radial,
                          .inactiveReason = "only the distance to the light's centre has it"}};
-    Real lightScale{*this,
-                    {.id = "light-scale",
-                     .label = "Light scale",
-                     .value = 1,
-                     .min = 0,
-                     .max = 4,
-                     .source = "Valient, de Boer eq. 1 (r is the light's own)",
-                     .help = "Widens or narrows the penumbrae beyond what the light's size r gives. 1 is the light "
-                             "itself; anything else departs from the truth."}};
+    LightScale lightScale{*this, "Valient, de Boer eq. 1 (r is the light's own)"};
     Flag accumulate{*this,
                     {.id = "accumulate",
                      .value = 0,

@@ -56,15 +56,7 @@ struct Parameters : ParameterSet {
                         .source = "Fernando 2005; Scherzer 2009 figure 4 (16, 32)",
                         .help = "Comparisons averaged over the penumbra. Fewer leave noise or bands in wide penumbrae; "
                                 "paid only where something blocks."}};
-    Real lightScale{*this,
-                    {.id = "light-scale",
-                     .label = "Light scale",
-                     .value = 1,
-                     .min = 0,
-                     .max = 4,
-                     .help =
-                         "Widens or narrows the penumbrae beyond what the light's size gives. 1 is the light itself; "
-                         "anything else departs from the truth."}};
+    LightScale lightScale{*this};
     Flag rotate{*this,
                 {.id = "rotate",
                  .label = "Shift per pixel",

@@ -92,7 +92,12 @@ TEST_CASE("a light that is off has no buffers, and one that moves begins only it
     s.furtherLights[0].on = true; // without what it held before
     frames(s, 1);
     CHECK(most("light-2/temporal.shadow-buffer") < before);
-    s.display.show = Show::Shadow; // of the first alone
+    s.comparison = {.against = Against::Technique, .as = CompareAs::Error}; // of the first alone, as is
+    frames(s, 1);
+    CHECK(renderer().flow().find("a/temporal.shadow-buffer"));
+    CHECK_FALSE(renderer().flow().find("a/light-2/temporal.shadow-buffer"));
+    s.comparison = {};
+    s.display.show = Show::Shadow;
     frames(s, 1);
     CHECK_FALSE(renderer().flow().find("light-2/temporal.shadow-buffer"));
 }
