@@ -6,9 +6,15 @@
 #include "lib/octahedral.glsl"
 #include "lib/light_space.glsl"
 
+// A shader that looks at MAPS maps turns to each in turn.
+#ifdef MAPS
+#define LIGHT_VIEW firstLightView
+#else
+#define LIGHT_VIEW lightView
+#endif
 layout(std140, binding = 0) uniform Constants {
     ViewBlock view;
-    LightViewBlock lightView;
+    LightViewBlock LIGHT_VIEW;
 #ifdef OWN_CONSTANTS
     OWN_CONSTANTS
 #endif
@@ -16,6 +22,9 @@ layout(std140, binding = 0) uniform Constants {
     vec4 table[TABLE]; // a filter's own
 #endif
 };
+#ifdef MAPS
+LightViewBlock lightView = firstLightView;
+#endif
 uniform sampler2D depth;  // eye depth [m], 0: no surface
 uniform sampler2D normal; // xy geometric normal, world, octahedral
 uniform writeonly image2D shadow;

@@ -59,7 +59,8 @@ float blocks(Lookup l, float z, vec2 delta)
 
 // The stored depth of the texel whose lower left corner is `corner` [texels]. The sampler clamps to the edge: outside the
 // map its empty border answers.
-float signedDepth(vec2 corner) { return textureLod(shadowMap, (corner + 0.5) * lightView.light.w, 0.0).x; }
+float signedDepthIn(sampler2D map, vec2 corner) { return textureLod(map, (corner + 0.5) * lightView.light.w, 0.0).x; }
+float signedDepth(vec2 corner) { return signedDepthIn(shadowMap, corner); }
 float storedDepth(vec2 corner) { return abs(signedDepth(corner)); } // a sign only tags what has moved
 
 // The stored depths of the four texels from `corner` on: w, z in its row, x, y in the row above.

@@ -34,9 +34,10 @@ void Flow::begin(Turn turn) {
     if (turn == Turn::Next) lastImages_.clear();
     for (const ImageNode& image : images_) {
         if (!image.kept || turn == Turn::Again) continue;
-        Remembered& last = lastImages_.emplace_back(Remembered{image.label, image.spec, 0, 1});
+        Remembered& last = lastImages_.emplace_back(Remembered{image.label, image.spec, 0, 1, 1});
         for (const PastNode& past : pasts_)
-            if (past.label == image.label) last.key = past.key, last.age = past.age + 1;
+            if (past.label == image.label)
+                last.key = past.key, last.age = past.age + 1, last.steps = past.steps + past.advance;
     }
     passes_.clear();
     images_.clear();
@@ -153,11 +154,12 @@ PastImage Flow::past(Scope scope, const ImageSpec& spec, uint64_t key) {
     const auto last = std::find_if(lastImages_.begin(), lastImages_.end(), [&](const Remembered& image) {
         return image.label == label && image.spec.sameStorage(spec) && image.key == key;
     });
-    const int age = last == lastImages_.end() ? 0 : last->age;
+    const bool found = last != lastImages_.end();
+    const int age = found ? last->age : 0, steps = found ? last->steps : 0;
     // What cannot be read is lost: its texture is cleared.
     if (age == 0) std::erase_if(lastImages_, [&](const Remembered& image) { return image.label == label; });
-    pasts_.push_back({spec, label, key, age});
-    return PastImage(static_cast<int>(pasts_.size()) - 1, age);
+    pasts_.push_back({spec, label, key, age, steps});
+    return PastImage(static_cast<int>(pasts_.size()) - 1, age, steps);
 }
 
 bool Flow::living() const {

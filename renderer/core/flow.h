@@ -48,12 +48,14 @@ public:
     int index() const { return index_; }    // of the flow's pasts()
     bool valid() const { return age_ > 0; } // false: there was none, it reads as zero
     int age() const { return age_; }        // for how many frames in a row there has been one
+    int steps() const { return steps_; }    // that those frames took: one each, or as advance() has it
 
 private:
     friend class Flow;
-    PastImage(int index, int age) : index_(index), age_(age) {}
+    PastImage(int index, int age, int steps) : index_(index), age_(age), steps_(steps) {}
     int index_;
     int age_;
+    int steps_;
 };
 
 enum class Sampling : uint8_t {
@@ -146,7 +148,7 @@ struct Supply {
 // The bytes of the std140 block `Constants` (binding 0) of a pass.
 class Constants {
 public:
-    static constexpr size_t capacity = 1024;
+    static constexpr size_t capacity = 2048;
     Constants() = default;
     template <class Block> Constants(const Block& block) : size_(sizeof(Block)) {
         static_assert(std::is_trivially_copyable_v<Block> && sizeof(Block) <= capacity && sizeof(Block) % 16 == 0);
@@ -216,6 +218,8 @@ public:
         int label;
         uint64_t key;
         int age;
+        int steps;
+        int advance = 1;
         bool finished = false;
     };
     struct TileNode {
@@ -250,6 +254,8 @@ public:
     // Last frame's image of this label, storage and key, or zeros. Asking for it makes the flow keep it from now on.
     // The key stands for all that the image must have in common with this frame, such as the view.
     PastImage past(Scope scope, const ImageSpec& spec, uint64_t key = 0);
+    // This frame takes so many steps of what the image is the sum of.
+    void advance(PastImage image, int steps) { pasts_[static_cast<size_t>(image.index())].advance = steps; }
     // Nothing new will come of this image until its key is another.
     void finish(PastImage image) { pasts_[static_cast<size_t>(image.index())].finished = true; }
     // Whether another frame of the same inputs may look different.
@@ -299,7 +305,7 @@ private:
         int label;
         ImageSpec spec;
         uint64_t key;
-        int age;
+        int age, steps;
     };
     int intern(Scope scope, std::string_view name);
 

@@ -42,6 +42,24 @@ glm::vec2 lightPoint(const AreaLight& light, glm::vec2 u) {
 namespace {
 
 float belowOne(double value) { return std::min(static_cast<float>(value), 0x1.fffffep-1f); } // rounding reaches 1
+float fromBits(uint32_t bits) { return belowOne(static_cast<double>(bits) / 4294967296.0); }
+
+// A permutation of 32-bit numbers: PCG (O'Neill 2014; Jarzynski, Olano 2020).
+uint32_t permuted(uint32_t n) {
+    n = n * 747796405u + 2891336453u;
+    n = ((n >> ((n >> 28) + 4)) ^ n) * 277803737u;
+    return (n >> 22) ^ n;
+}
+
+// Each bit turned or not, as chance has it for the bits above.
+uint32_t scrambled(uint32_t bits, uint32_t seed) {
+    uint32_t turned = 0;
+    for (uint32_t bit = 0; bit < 32; ++bit) {
+        const uint32_t above = bit == 31 ? 0 : bits >> (bit + 1);
+        turned |= (permuted(permuted(32 * seed + bit) ^ above) >> 31) << bit;
+    }
+    return bits ^ turned;
+}
 
 } // namespace
 
@@ -59,13 +77,16 @@ glm::vec2 r2Point(uint32_t i) {
     return {belowOne(point.x), belowOne(point.y)};
 }
 
-glm::vec2 randomPoint(uint32_t i) {
-    const auto uniform = [](uint32_t n) { // a permutation of 32-bit numbers: PCG (O'Neill 2014; Jarzynski, Olano 2020)
-        n = n * 747796405u + 2891336453u;
-        n = ((n >> ((n >> 28) + 4)) ^ n) * 277803737u;
-        return belowOne(static_cast<double>((n >> 22) ^ n) / 4294967296.0);
-    };
-    return {uniform(2 * i), uniform(2 * i + 1)};
+glm::vec2 sobolPoint(uint32_t i, uint32_t seed) {
+    uint32_t x = 0, y = 0;
+    uint32_t column = 1u << 31; // of Pascal's triangle modulo 2
+    for (uint32_t k = 0; k < 32; ++k) {
+        if (i >> k & 1) x |= 1u << (31 - k), y ^= column;
+        column ^= column >> 1;
+    }
+    return {fromBits(scrambled(x, 2 * seed)), fromBits(scrambled(y, 2 * seed + 1))};
 }
+
+glm::vec2 randomPoint(uint32_t i) { return {fromBits(permuted(2 * i)), fromBits(permuted(2 * i + 1))}; }
 
 } // namespace penumbra

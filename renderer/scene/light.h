@@ -69,6 +69,9 @@ glm::vec2 lightPoint(const AreaLight& light, glm::vec2 u);
 glm::vec2 haltonPoint(uint32_t i);
 // The i-th point of the R2 sequence (Roberts 2018), an additive recurrence, in [0, 1)².
 glm::vec2 r2Point(uint32_t i);
+// The i-th point of a Sobol sequence in [0, 1)², nested uniformly scrambled (Owen 1995) by a seed: of the first 2^k points
+// every rectangle of area 2^-k that comes of halving the sides holds one.
+glm::vec2 sobolPoint(uint32_t i, uint32_t seed);
 // Independent points of [0, 1)².
 glm::vec2 randomPoint(uint32_t i);
 

@@ -25,9 +25,11 @@ namespace penumbra {
 namespace {
 
 constexpr int mostTaps = 64;
+constexpr int mostMaps = 8;     // a frame
+constexpr int wellSampled = 256; // steps after which one map a frame is enough
 constexpr int32_t mostHalfs = 2048, mostFloats = 1 << 24; // whole numbers that count without rounding
 
-enum class Sequence { Halton, R2, Random };
+enum class Sequence { Halton, R2, Random, Sobol };
 enum class Start { Pcss, Search, Hard };
 enum class Storage { Half, Float };
 enum class Lookup { Nearest, Bilinear };
@@ -37,7 +39,7 @@ enum class Neighbourhood { Off, Box, Poisson };
 enum class Footprint { Screen, Surface };
 enum class Mixing { Threshold, Blend };
 enum class ErrorEstimate { Equation3, Cautious };
-constexpr std::string_view sequenceNames[] = {"halton", "r2", "random"};
+constexpr std::string_view sequenceNames[] = {"halton", "r2", "random", "sobol"};
 constexpr std::string_view startNames[] = {"pcss", "search", "hard"};
 constexpr std::string_view storageNames[] = {"16f", "32f"};
 constexpr std::string_view lookupNames[] = {"nearest", "bilinear"};
@@ -409,6 +411,17 @@ struct Parameters : ParameterSet {
                          .source = "Scherzer 2009, 5 and thesis 5.4.1 (future work)",
                          .help = "Samples that are left of a history when the light moves or changes its size, or the "
                                  "surface itself moves. Few follow at once, many trail behind; 0 starts anew."}};
+    Integer mapsAtRest{*this,
+                       {.id = "maps-at-rest",
+                        .label = "Maps at rest",
+                        .symbol = "m",
+                        .value = 1,
+                        .min = 1,
+                        .max = mostMaps,
+                        .unit = Unit::Samples,
+                        .source = "Scherzer 2009 (1)",
+                        .help = "Shadow maps a frame, and as many tests, while nothing changes and until there are 256. "
+                                "A view at rest is done in fewer, dearer frames."}};
     Real overscan{*this,
                   {.id = "overscan",
                    .value = 5,
@@ -430,6 +443,11 @@ struct HistoryConstants {
     vec4 lastRayCorner, lastRayDx, lastRayDy; // of last frame's view
     vec4 keep;    // most samples that a history keeps: x in this frame, z if its surface moves; y = that it may have
     vec4 picture; // xy of its first pixel in the buffer
+};
+
+struct StillConstants {
+    HistoryConstants history;
+    LightViewBlock further[mostMaps - 1]; // of the second map and those after it
 };
 
 struct StartConstants {
@@ -469,7 +487,7 @@ constexpr std::string_view stateNames[] = {"no surface",
                                            "new: a mover's shadow",
                                            "a mover's shadow has left"};
 constexpr Channel testChannels[] = {
-    {"tau", "τ_n", "hard shadow test of this frame; 1: the point of the light is hidden", Unit::None, 0, 1},
+    {"tau", "τ_n", "hard shadow test of this frame, a mean where there are several; 1: the point of the light is hidden", Unit::None, 0, 1},
     {"event", "", "what became of the history in this frame", Unit::None, 0, std::size(eventNames) - 1, eventNames},
     {"light-x", "x", "point of the light that was tested, in half widths from its centre", Unit::None, -1, 1},
     {"light-y", "y", "point of the light that was tested, in half heights from its centre", Unit::None, -1, 1}};
@@ -516,9 +534,11 @@ public:
                                Extent{inputs.view.size.x, inputs.view.size.y}, bufferChannels};
         const PastImage past = flow.past(scope, buffer, historyKey(inputs));
         const int32_t most = std::min<int32_t>(parameters_.mostSamples, half ? mostHalfs : mostFloats);
-        if (past.age() >= most + int32_t(parameters_.startWeight) && !moves(inputs)) flow.finish(past);
+        if (past.steps() >= most + int32_t(parameters_.startWeight) && !moves(inputs)) flow.finish(past);
 
-        const ShadowMap map = drawShadowMap(flow, scope, inputs, describeMap(inputs, past.age()));
+        const int count = mapsOf(inputs, past);
+        flow.advance(past, count);
+        const ShadowMap map = drawShadowMap(flow, scope, inputs, describeMap(inputs, past.steps()));
         const glm::ivec2 size = inputs.pictureSize();
         std::optional<ShadowMap> central;
         if (drawsCentre(inputs)) {
@@ -529,6 +549,7 @@ public:
         Frame frame{.map = map,
                     .estimated = central ? *central : map,
                     .past = past,
+                    .further = drawFurther(flow, scope, inputs, past.steps() + 1, count - 1),
                     .buffer = buffer,
                     .shadow = {"shadow", Format::R32F, {size.x, size.y}, shadowChannels()}};
         if (parameters_.start != Start::Hard && !stands(inputs, past))
@@ -551,6 +572,7 @@ private:
         const ShadowMap& map;       // from this frame's point of the light
         const ShadowMap& estimated; // what estimates look at
         const PastImage& past;
+        FixedVector<ShadowMap, mostMaps - 1> further; // the frame's other maps
         ImageSpec buffer, shadow;
         std::optional<TileSet> starting = {};  // of the buffer: surfaces without a history
         std::optional<TileSet> asking = {};    // of the picture: they ask their neighbours
@@ -578,10 +600,25 @@ private:
         return parameters_.start == Start::Pcss && halfSize(inputs.light) != vec2(0);
     }
 
+    // Several where nothing changes, unless somebody watches test by test.
+    int mapsOf(const Inputs& inputs, const PastImage& past) const {
+        return stands(inputs, past) && !inputs.inspection.probe && past.steps() < wellSampled ? parameters_.mapsAtRest : 1;
+    }
+
+    FixedVector<ShadowMap, mostMaps - 1> drawFurther(Flow& flow, Scope scope, const Inputs& inputs, int step,
+                                                     int count) const {
+        static constexpr std::string_view owners[] = {"temporal-2", "temporal-3", "temporal-4", "temporal-5",
+                                                      "temporal-6", "temporal-7", "temporal-8"};
+        FixedVector<ShadowMap, mostMaps - 1> maps;
+        for (int i = 0; i < count; ++i)
+            maps.push_back(drawShadowMap(flow, {scope.instance, owners[i]}, inputs, describeMap(inputs, step + i)));
+        return maps;
+    }
+
     // The first map is from the light's centre where it serves an estimate.
-    ShadowMapDescription describeMap(const Inputs& inputs, int age) const {
-        const auto i = static_cast<uint32_t>(age);
-        const bool central = age == 0 && estimates(inputs);
+    ShadowMapDescription describeMap(const Inputs& inputs, int step) const {
+        const auto i = static_cast<uint32_t>(step);
+        const bool central = step == 0 && estimates(inputs);
         const uint32_t point = estimates(inputs) ? i : i + 1;
         ShadowMapDescription description =
             parameters_.map.describe(central ? lightCentre : lightPoint(inputs.light, samplePoint(inputs.seed, point)));
@@ -600,14 +637,13 @@ private:
                halfSize(inputs.light) != vec2(0);
     }
 
-    // Another seed shifts them all.
+    // The i-th, from 1, under a seed: another one shifts them all, or scrambles otherwise.
     vec2 samplePoint(uint32_t seed, uint32_t i) const {
-        const auto point = [&](uint32_t k) {
-            return parameters_.sequence == Sequence::Halton ? haltonPoint(k)
-                   : parameters_.sequence == Sequence::R2   ? r2Point(k)
-                                                            : randomPoint(k);
-        };
-        return glm::fract(point(i) + haltonPoint(seed));
+        if (parameters_.sequence == Sequence::Sobol) return sobolPoint(i - 1, seed);
+        const vec2 point = parameters_.sequence == Sequence::Halton ? haltonPoint(i)
+                           : parameters_.sequence == Sequence::R2   ? r2Point(i)
+                                                                    : randomPoint(i);
+        return glm::fract(point + haltonPoint(seed));
     }
 
     static HistoryConstants historyConstants(const Inputs& inputs, const LightViewBlock& light, float kept,
@@ -631,10 +667,18 @@ private:
 
     // The buffer, what its samples say the shadow is and, where somebody looks, the test.
     Flow::Outputs addSample(Flow& flow, Scope scope, const Inputs& inputs, const Frame& frame, int32_t most) const {
-        const auto& [map, estimated, past, buffer, shadow, starting, asking, attenuation] = frame;
+        const auto& [map, estimated, past, further, buffer, shadow, starting, asking, attenuation] = frame;
         const float kept = lightChanged(inputs) ? float(parameters_.lightMemory) : float(mostFloats);
+        StillConstants constants{historyConstants(inputs, map.view, kept, most, parameters_.lightMemory), {}};
+        PassReads reads{{"shadowMap", map.depth}, {"history", past}};
+        for (size_t i = 0; i < further.size(); ++i) {
+            static constexpr std::string_view names[] = {"shadowMap2", "shadowMap3", "shadowMap4", "shadowMap5",
+                                                         "shadowMap6", "shadowMap7", "shadowMap8"};
+            constants.further[i] = further[i].view;
+            reads.push_back({names[i], further[i].depth});
+        }
         Resolver resolver{.shader = "techniques/temporal.glsl",
-                          .constants = historyConstants(inputs, map.view, kept, most, parameters_.lightMemory),
+                          .constants = further.empty() ? Constants(constants.history) : Constants(constants),
                           .writes = buffer.name,
                           .channels = buffer.channels,
                           .format = buffer.format,
@@ -647,7 +691,7 @@ private:
             resolver.defines.push_back({"INSPECTED"});
             resolver.also.push_back({"test", Format::RGBA16F, buffer.extent, testChannels});
         }
-        PassReads reads{{"shadowMap", map.depth}, {"history", past}};
+        if (!further.empty()) resolver.defines.push_back({"MAPS", static_cast<int>(further.size()) + 1});
         if (moves(inputs)) {
             resolver.defines.push_back({"MOTION"});
             reads.push_back({"motion", *inputs.geometryBuffer.motion});

@@ -1,16 +1,43 @@
 // SPDX-License-Identifier: MIT
 // One more hard shadow test of every surface, added to its history; see renderer/techniques/temporal.cpp.
 //
-// Texture reads: depth, normal, map, and 1 (nearest) or 4 (bilinear) of the history.
+// Texture reads: depth, normal, each of the MAPS maps, and 1 (nearest) or 4 (bilinear) of the history.
+#ifdef MAPS
+#define FURTHER_VIEWS LightViewBlock furtherViews[MAPS - 1];
+#else
+#define FURTHER_VIEWS
+#endif
 #define OWN_CONSTANTS                                                                                                      \
     vec4 lastX, lastY, lastForward; /* from a place relative to the eye [m] to last frame's: d (x, y) [pixels], d [m] */   \
     vec4 lastRayCorner, lastRayDx, lastRayDy; /* of last frame's view */                                                   \
     vec4 keep; /* most samples that a history keeps: x in this frame, z if its surface moves; y = that it may have */      \
-    vec4 picture; // xy of its first pixel in the buffer
+    vec4 picture; /* xy of its first pixel in the buffer */                                                                \
+    FURTHER_VIEWS // of the second map and those after it
 #include "shadow_lookup.glsl"
 #include "techniques/temporal_mixing.glsl"
 
 uniform sampler2D history; // shadowBuffer of the last frame
+#ifdef MAPS
+uniform sampler2D shadowMap2;
+#if MAPS > 2
+uniform sampler2D shadowMap3;
+#endif
+#if MAPS > 3
+uniform sampler2D shadowMap4;
+#endif
+#if MAPS > 4
+uniform sampler2D shadowMap5;
+#endif
+#if MAPS > 5
+uniform sampler2D shadowMap6;
+#endif
+#if MAPS > 6
+uniform sampler2D shadowMap7;
+#endif
+#if MAPS > 7
+uniform sampler2D shadowMap8;
+#endif
+#endif
 #ifdef MOTION
 uniform sampler2D motion;
 #endif
@@ -25,7 +52,7 @@ TILE_SET(startingTiles, starting)
 TILE_SET(askingTiles, asking)
 #endif
 #ifdef INSPECTED
-uniform writeonly image2D test; // τ, what became of the history, xy the point of the light in half sizes
+uniform writeonly image2D test; // τ (a mean over the maps), what became of the history, xy the light's point in half sizes
 #endif
 
 const bool absoluteTest = DEPTH_TEST == DEPTH_TEST_ABSOLUTE;
@@ -117,19 +144,49 @@ float eventOf(Found past, bool known, bool fresh, bool moving, bool tagged)
 }
 #endif
 
+// Does a map hide its point of the light?
+struct Test {
+    float tau;
+    bool blocked;
+    float z; // what is stored
+};
+
+Test testIn(sampler2D map, Receiver r)
+{
+    Lookup l = makeLookup(r, depthBias, slopeBias, receiverPlane != 0, false);
+    bool belowHorizon = directional ? r.facing <= 0.0 : r.facing >= 0.0;
+    vec2 corner = floor(l.texel);
+    float z = signedDepthIn(map, corner);
+    bool blocked = r.known < 0.0 && !belowHorizon && blocks(l, abs(z), corner + 0.5 - l.texel) > 0.0;
+    return Test(r.known >= 0.0 ? r.known : belowHorizon || blocked ? 1.0 : 0.0, blocked, z);
+}
+
+// The mean blocker depth of a history of n tests, with the last one's. Directional depths may be 0, which means that
+// nothing blocks.
+float withDepth(float blocker, Test test, float n)
+{
+    float d = axialDepth(abs(test.z));
+    float refined = blocker == 0.0 ? d : withBlocker(blocker, d, n, float(blockerWeight));
+    return !test.blocked ? blocker : refined == 0.0 ? 1e-6 : refined;
+}
+
+#ifdef MAPS
+void addMap(sampler2D map, LightViewBlock from, inout History h, inout float blocker, inout float taus)
+{
+    lightView = from;
+    Test test = testIn(map, findReceiver(normalOffset));
+    h = withSample(h, test.tau, keep.y);
+    blocker = withDepth(blocker, test, h.n);
+    taus += test.tau;
+}
+#endif
+
 void main()
 {
     Receiver r = findReceiver(normalOffset);
-    Lookup l = makeLookup(r, depthBias, slopeBias, receiverPlane != 0, false);
-    vec2 s = lightView.sample_reference.xy;
-
-    // τ: does the map hide its point of the light?
-    bool belowHorizon = directional ? r.facing <= 0.0 : r.facing >= 0.0;
-    vec2 corner = floor(l.texel);
-    float z = signedDepth(corner);
-    bool blocked = r.known < 0.0 && !belowHorizon && blocks(l, abs(z), corner + 0.5 - l.texel) > 0.0;
-    float tau = r.known >= 0.0 ? r.known : belowHorizon || blocked ? 1.0 : 0.0;
-    bool moving = blocked && z < 0.0;
+    Test first = testIn(shadowMap, r);
+    float tau = first.tau;
+    bool moving = first.blocked && first.z < 0.0;
 #ifdef MOVERS
     moving = texelFetch(movers, r.pixel, 0).x > 0.0;
 #endif
@@ -158,11 +215,29 @@ void main()
     float weight = fresh && lightView.light.x + lightView.light.y > 0.0 ? float(startWeight) : 1.0;
     h = History(weight * h.rho, weight == 1.0 ? h.n : weight);
 #endif
-    float d = axialDepth(abs(z));
-    float blocker = fresh ? 0.0 : past.blocker;
-    float refined = blocker == 0.0 ? d : withBlocker(blocker, d, h.n, float(blockerWeight));
-    // Directional depths may be 0, which means that nothing blocks.
-    blocker = !blocked ? blocker : refined == 0.0 ? 1e-6 : refined;
+    float blocker = withDepth(fresh ? 0.0 : past.blocker, first, h.n);
+#ifdef MAPS
+    addMap(shadowMap2, furtherViews[0], h, blocker, tau);
+#if MAPS > 2
+    addMap(shadowMap3, furtherViews[1], h, blocker, tau);
+#endif
+#if MAPS > 3
+    addMap(shadowMap4, furtherViews[2], h, blocker, tau);
+#endif
+#if MAPS > 4
+    addMap(shadowMap5, furtherViews[3], h, blocker, tau);
+#endif
+#if MAPS > 5
+    addMap(shadowMap6, furtherViews[4], h, blocker, tau);
+#endif
+#if MAPS > 6
+    addMap(shadowMap7, furtherViews[5], h, blocker, tau);
+#endif
+#if MAPS > 7
+    addMap(shadowMap8, furtherViews[6], h, blocker, tau);
+#endif
+    tau /= float(MAPS);
+#endif
     float depthTag = tagged ? -r.eyeDepth : r.eyeDepth;
     bool surface = r.eyeDepth > 0.0;
 #ifdef STARTED
@@ -181,7 +256,7 @@ void main()
     if (surface && !starts && asksNeighbours(h, blocker, visibleAt(r.pixel))) MARK(asking, pixel)
 #endif
 #ifdef INSPECTED
-    vec2 point = s / max(lightView.light.xy, vec2(1e-9));
+    vec2 point = lightView.sample_reference.xy / max(lightView.light.xy, vec2(1e-9)); // of the last map
     imageStore(test, r.pixel, vec4(tau, eventOf(past, surface, fresh, moving, tagged), point));
 #endif
 }
