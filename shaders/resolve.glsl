@@ -79,7 +79,7 @@ Receiver findReceiverOf(ivec2 pixel, float normalOffset)
 
     vec2 s = lightView.sample_reference.xy;
     float f = lightView.sample_reference.z;
-    float texelSize = 2.0 * lightView.window.z * lightView.light.w; // on the reference plane [m]
+    float texelSize = 2.0 * max(lightView.window.z, lightView.window.w) * lightView.light.w; // on the reference plane [m]
     // (R + ½) √2 w sin θ removes acne from planes at every angle and never diverges.
     vec3 towardsLight = normalize(directional ? vec3(s, 1.0) : vec3(s, 0.0) - r.positionLight);
     float cosine = dot(r.normalLight, towardsLight);

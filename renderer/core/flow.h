@@ -148,7 +148,7 @@ struct Supply {
 // The bytes of the std140 block `Constants` (binding 0) of a pass.
 class Constants {
 public:
-    static constexpr size_t capacity = 2048;
+    static constexpr size_t capacity = 1024;
     Constants() = default;
     template <class Block> Constants(const Block& block) : size_(sizeof(Block)) {
         static_assert(std::is_trivially_copyable_v<Block> && sizeof(Block) <= capacity && sizeof(Block) % 16 == 0);

@@ -21,7 +21,6 @@ struct Window {
     vec2 min{1e30f}, max{-1e30f};
     bool empty() const { return min.x >= max.x || min.y >= max.y; }
     void add(vec2 p) { min = glm::min(min, p), max = glm::max(max, p); }
-    Window grown(vec2 by) const { return {min - by, max + by}; }
     Window intersected(const Window& o) const { return {glm::max(min, o.min), glm::min(max, o.max)}; }
 };
 
@@ -150,16 +149,13 @@ struct MapFit {
     float farthest = 1; // from any point of the light
 };
 
-// Where corners fall on the reference plane, from every corner of the light. Parts before the near plane are moved onto
+// Where corners fall on the reference plane, from the point s of the light. Parts before the near plane are moved onto
 // it, with the whole cross-section, which contains theirs.
-Window project(const Corners& corners, const MapFit& fit, vec2 halfLight, bool directional) {
+Window project(const Corners& corners, const MapFit& fit, LightSample s, bool directional) {
     Window window;
     const bool straddles = std::any_of(corners.begin(), corners.end(), [&](vec3 c) { return c.z < fit.near; });
     const auto add = [&](vec2 xy, float d) {
-        // Shears the box around the light: from its corner s a point comes to s + (xy − s) f/d.
-        const vec2 centre = directional ? xy : xy * (fit.reference / d);
-        const vec2 reach = halfLight * std::abs(directional ? d - fit.reference : 1 - fit.reference / d);
-        window.add(centre - reach), window.add(centre + reach);
+        window.add(directional ? xy + s * (d - fit.reference) : s + (xy - s) * (fit.reference / d));
     };
     for (const vec3& c : corners) {
         if (straddles && !directional) add(vec2(c), fit.near);
@@ -205,9 +201,9 @@ bool shadesOthers(const Occluder& caster, const Bounds& box, std::span<const Occ
 }
 
 // `view`: of receivers, only what it shows counts, and of casters, what may stand before that. A floor that lies behind
-// everything, as seen from the light, takes no texels where nothing stands on it.
+// everything, as seen from the light, takes no texels where nothing stands on it. The window is that of the point s.
 MapFit fitMap(const AreaLight& light, std::span<const Occluder> occluders, const mat4& fromWorld, vec2 half,
-              const View* view) {
+              LightSample s, const View* view) {
     const bool directional = light.shape == LightShape::Directional;
     size_t boxes = 0, plain = 0;
     for (const Occluder& occluder : occluders) boxes += boxesOf(occluder).size(), plain += !occluder.shadesItself;
@@ -254,22 +250,24 @@ MapFit fitMap(const AreaLight& light, std::span<const Occluder> occluders, const
         const bool casts = occluder.casts && beyondNear(box);
         if (casts && (occluder.shadesItself || !few ||
                       shadesOthers(occluder, boxWorld, occluders, shown, fromWorld, points, directional))) {
-            const Window window = project(box, fit, half, directional);
+            const Window window = project(box, fit, s, directional);
             casters.add(window.min), casters.add(window.max);
         }
         const Corners seen = shown ? within(*shown, box) : box;
         if (!beyondNear(seen)) return;
-        // A receiver looks at the whole light, past blockers that fall beside it on the reference plane.
+        // A receiver may look at the whole light, past blockers that fall beside it on the reference plane: towards the
+        // point l by (l − s) f (1/d_b − 1/d) or, directional, (l − s) (d − d_b).
         float d = -1e30f;
         for (const vec3& c : seen) d = std::max(d, c.z);
-        const vec2 sees = directional ? half * (d - fit.near) : half * (fit.reference * (1 / fit.near - 1 / d));
-        const Window window = project(seen, fit, half, directional).grown(glm::max(sees, vec2(0)));
-        receivers.add(window.min), receivers.add(window.max);
+        const float aside = directional ? d - fit.near : fit.reference * (1 / fit.near - 1 / d);
+        const Window window = project(seen, fit, s, directional);
+        receivers.add(window.min - (half + s) * std::max(aside, 0.0f));
+        receivers.add(window.max + (half - s) * std::max(aside, 0.0f));
     });
     fit.window = casters.intersected(receivers);
     if (!directional) {
-        const vec2 widest = half + widestTangent * fit.reference;
-        fit.window = fit.window.intersected({-widest, widest});
+        const vec2 widest(widestTangent * fit.reference);
+        fit.window = fit.window.intersected({s - widest, s + widest});
     }
     if (fit.window.empty()) fit.window = {vec2(-1e-3f * fit.far), vec2(1e-3f * fit.far)};
     return fit;
@@ -287,29 +285,30 @@ LightViewBlock lightView(const AreaLight& light, std::span<const Occluder> occlu
     ensure(!(directional && radial), "a directional light has no point to measure radial depth from");
     const mat4 fromWorld = lightFromWorld(light);
     const vec2 half = halfSize(light);
-    const MapFit fit = fitMap(light, occluders, fromWorld, half, description.fit == Fit::View ? view : nullptr);
+    const MapFit fit = fitMap(light, occluders, fromWorld, half, s, description.fit == Fit::View ? view : nullptr);
     const float f = fit.reference;
 
-    // Square texels, and a border of empty ones, whole after a shift too.
-    const vec2 extent = fit.window.max - fit.window.min;
-    const float side = std::max(extent.x, extent.y);
+    // A border of empty texels, whole after a shift too.
+    vec2 side = fit.window.max - fit.window.min;
+    const float longest = std::max(side.x, side.y);
+    side = description.square ? vec2(longest) : glm::max(side, vec2(1e-3f * longest));
     const int filled = size - 2 * description.border - (description.shift != vec2(0) ? 1 : 0);
-    const float h = 0.5f * side * static_cast<float>(size) / static_cast<float>(std::max(filled, 1));
+    const vec2 h = side * (0.5f * static_cast<float>(size) / static_cast<float>(std::max(filled, 1)));
     const vec2 centre =
-        0.5f * (fit.window.min + fit.window.max) + description.shift * (2 * h / static_cast<float>(size));
+        0.5f * (fit.window.min + fit.window.max) + description.shift * (2.0f * h / static_cast<float>(size));
 
     // clip = M · light-space position, row by row; see shaders/shared/view.glsl.h for the map's coordinates.
     mat4 rows(0);
     if (directional) {
         // x = (P.x + s.x (d − f) − c.x) / h with d = −z
-        rows[0] = vec4(1, 0, -s.x, -s.x * f - centre.x) / h;
-        rows[1] = vec4(0, 1, -s.y, -s.y * f - centre.y) / h;
+        rows[0] = vec4(1, 0, -s.x, -s.x * f - centre.x) / h.x;
+        rows[1] = vec4(0, 1, -s.y, -s.y * f - centre.y) / h.y;
         rows[2] = vec4(0, 0, -1, -fit.near) / (fit.far - fit.near);
         rows[3] = vec4(0, 0, 0, 1);
     } else {
         // w = d; x w = ((s.x − c.x) d + (P.x − s.x) f) / h
-        rows[0] = vec4(f, 0, -(s.x - centre.x), -s.x * f) / h;
-        rows[1] = vec4(0, f, -(s.y - centre.y), -s.y * f) / h;
+        rows[0] = vec4(f, 0, -(s.x - centre.x), -s.x * f) / h.x;
+        rows[1] = vec4(0, f, -(s.y - centre.y), -s.y * f) / h.y;
         rows[2] = vec4(0, 0, -fit.far, -fit.far * fit.near) / (fit.far - fit.near);
         rows[3] = vec4(0, 0, -1, 0);
     }
@@ -317,7 +316,7 @@ LightViewBlock lightView(const AreaLight& light, std::span<const Occluder> occlu
     block.lightFromWorld = fromWorld;
     block.clipFromWorld = glm::transpose(rows) * fromWorld;
     block.sample_reference = {s, f, directional ? 1.0f : 0.0f};
-    block.window = {centre, h, h};
+    block.window = {centre, h};
     const vec2 given = radial ? description.range : vec2(0);
     const float near = given.x > 0 ? given.x : fit.near;
     float far = given.y > 0 ? given.y : radial ? fit.farthest : fit.far;

@@ -30,10 +30,11 @@ struct ShadowMapDescription {
     Format format = Format::Depth32F; // or R32F, for depths that need a sign
     int samples = 1;                  // a texel; the driver's counts
     int layer = 0;                    // 0: the nearest surfaces, n: those behind the n-th; at most mostLayers − 1
-    // Moves the grid of texels by at most half a texel: without it all maps of a light have the same grid on the
+    // Moves the grid of texels by at most half a texel: without it the maps of a light have much the same grid on the
     // reference plane, and the mean of many keeps the rounding of each.
     glm::vec2 shift{0, 0};
-    int border = 1; // texels along the edge that stay empty: a lookup outside is clamped to them and finds no caster
+    bool square = true; // texels are; else each side of the window is as long as it must be
+    int border = 1;     // texels along the edge that stay empty: a lookup outside is clamped to them and finds no caster
     bool objects = false;    // an image of the numbers of the things that cast, too
     bool signMovers = false; // depth is negative where a caster's pose differs from the last frame's; needs R32F
 };
@@ -160,8 +161,8 @@ struct LightScale : Real {
                            "anything else departs from the truth."}) {}
 };
 
-// The projection of a map. The window and the depth range are fitted to casters and receivers as seen from the whole
-// light, so they are the same for every sample. Without a view it is fitted to the scene.
+// The projection of a map. The depth range is fitted to casters and receivers as seen from the whole light, and is the
+// same for every sample; the window to what is seen from the sample. Without a view it is fitted to the scene.
 LightViewBlock lightView(const AreaLight& light, std::span<const Occluder> occluders,
                          const ShadowMapDescription& description, const View* view = nullptr);
 inline LightViewBlock lightView(const Inputs& inputs, const ShadowMapDescription& description) {

@@ -447,7 +447,9 @@ struct HistoryConstants {
 
 struct StillConstants {
     HistoryConstants history;
-    LightViewBlock further[mostMaps - 1]; // of the second map and those after it
+    struct {
+        vec4 sampleReference, window;
+    } further[mostMaps - 1]; // of the second map and those after it
 };
 
 struct StartConstants {
@@ -543,6 +545,7 @@ public:
         std::optional<ShadowMap> central;
         if (drawsCentre(inputs)) {
             ShadowMapDescription description = parameters_.map.describe();
+            description.square = false;
             signMovers(description);
             central = drawShadowMap(flow, {scope.instance, "temporal-centre"}, inputs, description);
         }
@@ -622,6 +625,7 @@ private:
         const uint32_t point = estimates(inputs) ? i : i + 1;
         ShadowMapDescription description =
             parameters_.map.describe(central ? lightCentre : lightPoint(inputs.light, samplePoint(inputs.seed, point)));
+        description.square = false;
         if (!central && halfSize(inputs.light) != vec2(0))
             description.shift = parameters_.sequence == Sequence::R2 ? haltonPoint(i + 1) - 0.5f : gridShift(i);
         if (moves(inputs)) signMovers(description);
@@ -674,7 +678,7 @@ private:
         for (size_t i = 0; i < further.size(); ++i) {
             static constexpr std::string_view names[] = {"shadowMap2", "shadowMap3", "shadowMap4", "shadowMap5",
                                                          "shadowMap6", "shadowMap7", "shadowMap8"};
-            constants.further[i] = further[i].view;
+            constants.further[i] = {further[i].view.sample_reference, further[i].view.window};
             reads.push_back({names[i], further[i].depth});
         }
         Resolver resolver{.shader = "techniques/temporal.glsl",

@@ -3,16 +3,16 @@
 //
 // Texture reads: depth, normal, each of the MAPS maps, and 1 (nearest) or 4 (bilinear) of the history.
 #ifdef MAPS
-#define FURTHER_VIEWS LightViewBlock furtherViews[MAPS - 1];
+#define FURTHER_MAPS /* sample_reference and window of the second map and those after it */ vec4 furtherMaps[2 * (MAPS - 1)];
 #else
-#define FURTHER_VIEWS
+#define FURTHER_MAPS
 #endif
 #define OWN_CONSTANTS                                                                                                      \
     vec4 lastX, lastY, lastForward; /* from a place relative to the eye [m] to last frame's: d (x, y) [pixels], d [m] */   \
     vec4 lastRayCorner, lastRayDx, lastRayDy; /* of last frame's view */                                                   \
     vec4 keep; /* most samples that a history keeps: x in this frame, z if its surface moves; y = that it may have */      \
     vec4 picture; /* xy of its first pixel in the buffer */                                                                \
-    FURTHER_VIEWS // of the second map and those after it
+    FURTHER_MAPS
 #include "shadow_lookup.glsl"
 #include "techniques/temporal_mixing.glsl"
 
@@ -171,9 +171,11 @@ float withDepth(float blocker, Test test, float n)
 }
 
 #ifdef MAPS
-void addMap(sampler2D map, LightViewBlock from, inout History h, inout float blocker, inout float taus)
+// What is the light's stays: the compiler then works it out once for all maps.
+void addMap(sampler2D map, int further, inout History h, inout float blocker, inout float taus)
 {
-    lightView = from;
+    lightView.sample_reference = furtherMaps[2 * further];
+    lightView.window = furtherMaps[2 * further + 1];
     Test test = testIn(map, findReceiver(normalOffset));
     h = withSample(h, test.tau, keep.y);
     blocker = withDepth(blocker, test, h.n);
@@ -217,24 +219,24 @@ void main()
 #endif
     float blocker = withDepth(fresh ? 0.0 : past.blocker, first, h.n);
 #ifdef MAPS
-    addMap(shadowMap2, furtherViews[0], h, blocker, tau);
+    addMap(shadowMap2, 0, h, blocker, tau);
 #if MAPS > 2
-    addMap(shadowMap3, furtherViews[1], h, blocker, tau);
+    addMap(shadowMap3, 1, h, blocker, tau);
 #endif
 #if MAPS > 3
-    addMap(shadowMap4, furtherViews[2], h, blocker, tau);
+    addMap(shadowMap4, 2, h, blocker, tau);
 #endif
 #if MAPS > 4
-    addMap(shadowMap5, furtherViews[3], h, blocker, tau);
+    addMap(shadowMap5, 3, h, blocker, tau);
 #endif
 #if MAPS > 5
-    addMap(shadowMap6, furtherViews[4], h, blocker, tau);
+    addMap(shadowMap6, 4, h, blocker, tau);
 #endif
 #if MAPS > 6
-    addMap(shadowMap7, furtherViews[5], h, blocker, tau);
+    addMap(shadowMap7, 5, h, blocker, tau);
 #endif
 #if MAPS > 7
-    addMap(shadowMap8, furtherViews[6], h, blocker, tau);
+    addMap(shadowMap8, 6, h, blocker, tau);
 #endif
     tau /= float(MAPS);
 #endif
