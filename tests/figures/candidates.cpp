@@ -5,7 +5,7 @@
 // moment bias. A fragment is moved before the plane of its own surface, over the whole kernel, and compared with
 // percentage-closer filtering of just that depth: no bound is above it, and all of the error is light that leaks.
 //
-//     candidates [SURFACES A VIEW] [VIEW ...]        a table, as in docs/moments.md
+//     candidates SURFACES VIEW[=SCENE] ...        a table of so many surfaces of each view, as in docs/moments.md
 #include "app/command_line.h"
 #include "app/headless.h"
 #include "renderer/renderer.h"
@@ -142,9 +142,11 @@ constexpr int mapSize = 1024, halfKernel = 4;
 constexpr double sigma = 2.4, depthBias = 2e-5;
 
 // Of the surfaces of all layers so many at random.
-std::vector<Surface> surfacesOf(const std::string& viewName, size_t count) {
+std::vector<Surface> surfacesOf(const std::string& view, size_t count) {
+    const size_t equals = view.find('=');
     Options options;
-    options.view = viewName;
+    options.view = view.substr(0, equals);
+    if (equals != std::string::npos) options.scene = view.substr(equals + 1);
     Shot shot;
     Session session = makeSession(options, shot);
     changeShape(session.light, LightShape::Directional);
@@ -155,8 +157,8 @@ std::vector<Surface> surfacesOf(const std::string& viewName, size_t count) {
     Renderer renderer;
     const std::vector<LightLayer> layers = renderer.renderFromLight(session, mapSize, mostLightLayers);
     const LightViewBlock light = lightView(session.light, renderer.state().occluders(), {.size = mapSize});
-    const View view = lightsView(light, renderer.state().occluders());
-    const double eye = -(light.lightFromWorld * glm::vec4(view.eyeWorld, 1)).z; // where eye depth counts from
+    const View eyes = lightsView(light, renderer.state().occluders());
+    const double eye = -(light.lightFromWorld * glm::vec4(eyes.eyeWorld, 1)).z; // where eye depth counts from
     const double texel = 2.0 * light.window.z / mapSize;                        // [m]
     const auto imageOf = [&](size_t layer, std::string_view label) {
         const std::string full = fmt::format("{}/{}", lightLayerName(static_cast<int>(layer)), label);
@@ -229,9 +231,9 @@ Error errorOf(size_t candidate, const std::vector<Surface>& surfaces) {
 
 int main(int argc, char** argv) {
     try {
-        const size_t count = argc > 1 ? std::stoul(argv[1]) : 1000;
-        std::vector<std::string> views(argv + std::min(argc, 2), argv + argc);
-        if (views.empty()) views = {"courtyard", "garage", "chess-board", "littlest-tokyo"};
+        if (argc < 3) throw InputError("a number of surfaces and views were expected, candidates 600 courtyard");
+        const size_t count = std::stoul(argv[1]);
+        const std::vector<std::string> views(argv + 2, argv + argc);
         const HeadlessContext context;
         std::vector<std::vector<Surface>> surfaces;
         for (const std::string& view : views) surfaces.push_back(surfacesOf(view, count));
@@ -257,7 +259,9 @@ int main(int argc, char** argv) {
         std::vector<size_t> order(all.size());
         for (size_t i = 0; i < order.size(); ++i) order[i] = i;
         std::sort(order.begin(), order.end(), [&](size_t a, size_t b) { return rows[a].mean < rows[b].mean; });
-        fmt::print("| functions | mean | {} |\n| --- |", fmt::join(views, " | "));
+        fmt::print("| functions | mean |");
+        for (const std::string& view : views) fmt::print(" {} |", view.substr(0, view.find('=')));
+        fmt::print("\n| --- |");
         for (size_t i = 0; i <= views.size(); ++i) fmt::print(" --- |");
         fmt::print("\n");
         double above = 0;
