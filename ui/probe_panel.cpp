@@ -61,6 +61,7 @@ ImVec4 curveInk(const ProbePlot& plot, size_t series) {
     switch (plot.series[series].mark) {
     case ProbeMark::Step: return colour::text;
     case ProbeMark::Upright: return colour::muted;
+    case ProbeMark::Heavy: return colour::accent;
     default: break;
     }
     size_t line = 0;
@@ -192,7 +193,7 @@ void ProbePanel::curves(std::span<const ProbePlot> plots, ImVec2 size) const {
                 list.AddLine(from, {to.x, from.y}, ink, 1.6f * width);
                 list.AddLine({to.x, from.y}, to, ink, 1.6f * width);
             } else {
-                list.AddLine(from, to, ink, width);
+                list.AddLine(from, to, ink, mark == ProbeMark::Heavy ? 2 * width : width);
             }
         }
     }

@@ -185,7 +185,7 @@ struct MomentBias : Real {
                 .scale = Scale::Logarithmic,
                 .smallest = 1e-8,
                 .source = "Peters and Klein 2015, section 4.2 (2e-6 at 32 bits, 3e-5 at 16); signed: Peters et al. "
-                          "2017 (3e-7, 6e-5)",
+                          "2017 (3e-7 at 32 bits), ours (3e-5 at 16)",
                 .help = "Share of a fixed distribution that is mixed into the moments, so that rounding cannot make "
                         "them impossible. Too little speckles lit surfaces, too much lets light through at contacts.",
                 .defaultFrom = defaultFrom}) {}
