@@ -61,12 +61,11 @@ ImVec4 curveInk(const ProbePlot& plot, size_t series) {
     switch (plot.series[series].mark) {
     case ProbeMark::Step: return colour::text;
     case ProbeMark::Upright: return colour::muted;
-    case ProbeMark::Heavy: return colour::accent;
     default: break;
     }
     size_t line = 0;
     for (size_t i = 1; i < series; ++i)
-        line += plot.series[i].mark == ProbeMark::Line || plot.series[i].mark == ProbeMark::Dashed;
+        line += plot.series[i].mark != ProbeMark::Step && plot.series[i].mark != ProbeMark::Upright;
     return lineColour(line);
 }
 

@@ -105,7 +105,7 @@ MomentEncoding encodingOf(int count, MomentFormat format, DepthSign sign) {
 }
 
 double planeBias(const ParameterSet& set) { return 0.5 * planeDeviation(set); }
-double steeperBias(const ParameterSet& set) { return 0.8 * planeDeviation(set); }
+double steeperBias(const ParameterSet& set) { return 0.75 * planeDeviation(set); }
 
 bool isHalf(const ParameterSet& set) { return set.at("format").value() == double(FloatFormat::Float16); }
 
