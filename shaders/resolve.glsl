@@ -85,7 +85,7 @@ Receiver findReceiverOf(ivec2 pixel, float normalOffset)
     return r;
 }
 
-#ifdef PROBED
+#ifdef AT_ALL_DEPTHS
 // All invocations look at one pixel's receiver, each as if it lay at another depth; see shadow_lookup.glsl.
 uniform sampler2D kernelDepths;
 uniform writeonly image2D kernelOwn;

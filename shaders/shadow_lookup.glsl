@@ -67,7 +67,7 @@ float depthOfColumn(int column, int columns, float nearest, float farthest, floa
 }
 
 // Where one pixel is probed: at the depth of this column.
-#ifdef PROBED
+#ifdef AT_ALL_DEPTHS
 Lookup atProbedDepth(Lookup l) { return atDepth(l, texelFetch(kernelDepths, texelHere().xy, 0).x); }
 #else
 Lookup atProbedDepth(Lookup l) { return l; }

@@ -292,7 +292,7 @@ std::span<const ProbePlot> kernelPlots() {
 
 void resolveProbed(Flow& flow, Scope scope, const Inputs& inputs, Resolver resolver, const Constants& constants,
                    PassReads reads, Image depths, const ParameterSet& parameters) {
-    resolver.defines.push_back({"PROBED"});
+    resolver.defines.push_back({"AT_ALL_DEPTHS"});
     resolver.constants = constants;
     resolver.pass = resolver.writes = "kernel-own";
     resolver.channels = ownChannels;
