@@ -31,7 +31,7 @@ vec2 referenceStep(Receiver r, vec3 stepWorld)
 // Behind the horizon of the light's centre all is dark; outside the map, and in one without depth, nothing casts.
 MomentLookup findMoments(Receiver r, float constantBias, float slopeTexels)
 {
-    Lookup l = makeLookup(r, constantBias, slopeTexels, false, false);
+    Lookup l = atProbedDepth(makeLookup(r, constantBias, slopeTexels, false, false));
     MomentLookup m;
     m.place = (l.texel + lookup.border_perTexel.x) * lookup.border_perTexel.y;
 #ifdef MIPMAPPED

@@ -44,8 +44,7 @@ void main()
         nearest = t.weight > 0.0 ? min(nearest, t.z) : nearest;
         farthest = t.weight > 0.0 ? max(farthest, t.z) : farthest;
     }
-    float margin = 0.1 * (farthest - nearest) + 1e-3;
-    float t = mix(nearest - margin, farthest + margin, float(column.x) / float(probeColumns - 1));
+    float t = depthOfColumn(column.x, probeColumns, nearest, farthest, z_f);
 
     float inFront = 0.0;
     vec4 low = vec4(0.0), high = vec4(0.0), turns = vec4(0.0), warps = vec4(0.0);

@@ -94,6 +94,14 @@ Receiver findReceiverOf(ivec2 pixel, float normalOffset)
     return r;
 }
 
-Receiver findReceiver(float normalOffset) { return findReceiverOf(texelHere().xy, normalOffset); }
+#ifdef AT_ALL_DEPTHS
+// All invocations look at one pixel's receiver, each as if it lay at another depth; see shadow_lookup.glsl.
+uniform sampler2D kernelDepths;
+uniform writeonly image2D kernelOwn;
 
+Receiver findReceiver(float normalOffset) { return findReceiverOf(lookup.probed.xy, normalOffset); }
+void writeShadow(Receiver r, float psi) { imageStore(kernelOwn, texelHere().xy, vec4(r.known >= 0.0 ? r.known : psi)); }
+#else
+Receiver findReceiver(float normalOffset) { return findReceiverOf(texelHere().xy, normalOffset); }
 void writeShadow(Receiver r, float psi) { imageStore(shadow, r.pixel, vec4(r.known >= 0.0 ? r.known : psi)); }
+#endif

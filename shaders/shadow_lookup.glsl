@@ -47,6 +47,32 @@ Lookup makeLookup(Receiver r, float constantBias, float slopeTexels, bool withPl
     return l;
 }
 
+// With its plane moved to where the receiver itself has the map depth z.
+Lookup atDepth(Lookup l, float z)
+{
+    l.compared = z + l.offset;
+    if (l.farthest != 0.0)
+        l.farthest = directional ? 1.0 - l.compared : l.compared / (lightView.range.z * lightView.range.y) - 1.0;
+    return l;
+}
+
+// Of a probe's columns: even over all depths of a kernel, from `nearest` to `farthest`, and a little beyond. The column
+// next to the fragment has the fragment's own.
+float depthOfColumn(int column, int columns, float nearest, float farthest, float z_f)
+{
+    float margin = 0.1 * (farthest - nearest) + 1e-3;
+    float step = (farthest - nearest + 2.0 * margin) / float(columns - 1);
+    float t = nearest - margin + float(column) * step;
+    return abs(t - z_f) <= 0.5 * step ? z_f : t;
+}
+
+// Where one pixel is probed: at the depth of this column.
+#ifdef AT_ALL_DEPTHS
+Lookup atProbedDepth(Lookup l) { return atDepth(l, texelFetch(kernelDepths, texelHere().xy, 0).x); }
+#else
+Lookup atProbedDepth(Lookup l) { return l; }
+#endif
+
 // 1 if the caster stored as z at an offset of δ texels lies in front of the receiver's plane. An empty texel, z = 1, never
 // does: the plane is cut off at the far end.
 float blocks(Lookup l, float z, vec2 delta)

@@ -6,6 +6,7 @@
 // A window is divided into cells, each with moments of its own that are held against the receiver's plane at its middle. Bounds
 // of parts are never lower than that of the whole, and the plane rises less within them. With ever more cells this becomes
 // percentage-closer filtering of every texel.
+#include "shared/moments.glsl.h"
 #include "shared/summed_area.glsl.h"
 #define OWN_CONSTANTS SummedAreaLookupBlock lookup;
 #include "shadow_lookup.glsl"
@@ -118,16 +119,66 @@ vec2 windowOf(Receiver r, float d_b)
     return clamp(texels, smallestWindow, vec2(lookup.depth.z));
 }
 
+// What hides the light: whether anything does, and the half size [texels] of the window that it is filtered over.
+struct Penumbra {
+    bool found;
+    vec2 halfSize;
+};
+Penumbra findPenumbra(Receiver r, Lookup l)
+{
+    bool sane = abs(l.compared) < 1e30 && all(lessThan(abs(l.texel), vec2(1e6)));
+    int searched = r.known < 0.0 && sane ? cells : 0;
+    InFront blockers = inFrontWithin(l, windowOf(r, lightView.range.x), searched);
+    float z_b = (blockers.moment / max(blockers.psi, leastFound) - lookup.depth.y) / lookup.depth.x;
+    float d_b = clamp(axialDepth(z_b), lightView.range.x, lightView.range.y);
+    Penumbra p;
+    p.found = blockers.psi > leastFound;
+    p.halfSize = windowOf(r, p.found ? d_b : lightView.range.x);
+    return p;
+}
+
+#ifdef PROBED_WINDOW
+uniform writeonly image2D kernelDepths;
+
+// What a stored depth is where the receiver's plane is taken for level: it blocks at the same depths of the receiver.
+float levelled(Lookup l, float z, vec2 delta)
+{
+    float change = dot(l.gradient, delta);
+    return directional ? z - min(change, l.farthest) : (z + l.offset) * (1.0 + max(change, l.farthest)) - l.offset;
+}
+
+// Of a pixel's filter, at the depth of each column: the share of the window in front of it, and ψ there.
+void main()
+{
+    ivec2 column = texelHere().xy;
+    Receiver r = findReceiverOf(lookup.probed.xy, normalOffset);
+    Lookup l = makeLookup(r, depthBias, slopeBias, true, true);
+    Penumbra p = findPenumbra(r, l);
+    float z_f = l.compared - l.offset;
+    const int side = 64; // places across the window, so many that every texel of most windows is met
+    float nearest = z_f;
+    float farthest = z_f;
+    for (int i = 0; i < side * side; ++i) {
+        vec2 delta = (2.0 * (vec2(i % side, i / side) + 0.5) / float(side) - 1.0) * p.halfSize;
+        float z = levelled(l, storedDepth(floor(l.texel + delta)), delta);
+        nearest = min(nearest, z);
+        farthest = max(farthest, z);
+    }
+    float t = depthOfColumn(column.x, probeColumns, nearest, farthest, z_f);
+    float inFront = 0.0;
+    for (int i = 0; i < side * side; ++i) {
+        vec2 delta = (2.0 * (vec2(i % side, i / side) + 0.5) / float(side) - 1.0) * p.halfSize;
+        inFront += levelled(l, storedDepth(floor(l.texel + delta)), delta) < t ? 1.0 : 0.0;
+    }
+    float psi = inFrontWithin(atDepth(l, t), p.halfSize, cells).psi;
+    imageStore(kernelDepths, column, vec4(t, inFront / float(side * side), z_f, clamp(psi, 0.0, 1.0)));
+}
+#else
 void main()
 {
     Receiver r = findReceiver(normalOffset);
     Lookup l = makeLookup(r, depthBias, slopeBias, true, true);
-    bool sane = abs(l.compared) < 1e30 && all(lessThan(abs(l.texel), vec2(1e6)));
-    int searched = r.known < 0.0 && sane ? cells : 0;
-    InFront found = inFrontWithin(l, windowOf(r, lightView.range.x), searched);
-    float z_b = (found.moment / max(found.psi, leastFound) - lookup.depth.y) / lookup.depth.x;
-    int filtered = found.psi > leastFound ? cells : 0;
-    float d_b = clamp(axialDepth(z_b), lightView.range.x, lightView.range.y);
-    float psi = inFrontWithin(l, windowOf(r, d_b), filtered).psi;
-    writeShadow(r, clamp(psi, 0.0, 1.0));
+    Penumbra p = findPenumbra(r, l);
+    writeShadow(r, clamp(inFrontWithin(l, p.halfSize, p.found ? cells : 0).psi, 0.0, 1.0));
 }
+#endif

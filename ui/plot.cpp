@@ -20,7 +20,8 @@ float widthOf(std::string_view line) { return ImGui::CalcTextSize(line.data(), l
 ImVec4 lineColour(size_t i) {
     static const ImVec4 colours[] = {colour::accent,           {0.45f, 0.70f, 0.95f, 1}, {0.55f, 0.82f, 0.50f, 1},
                                      {0.85f, 0.55f, 0.85f, 1}, {0.95f, 0.85f, 0.40f, 1}, {0.40f, 0.82f, 0.80f, 1},
-                                     {0.92f, 0.48f, 0.45f, 1}, {0.60f, 0.58f, 0.95f, 1}, {0.75f, 0.65f, 0.50f, 1}};
+                                     {0.92f, 0.48f, 0.45f, 1}, {0.60f, 0.58f, 0.95f, 1}, {0.75f, 0.65f, 0.50f, 1},
+                                     {0.95f, 0.62f, 0.75f, 1}};
     return colours[i % std::size(colours)];
 }
 

@@ -65,7 +65,7 @@ ImVec4 curveInk(const ProbePlot& plot, size_t series) {
     }
     size_t line = 0;
     for (size_t i = 1; i < series; ++i)
-        line += plot.series[i].mark == ProbeMark::Line || plot.series[i].mark == ProbeMark::Dashed;
+        line += plot.series[i].mark != ProbeMark::Step && plot.series[i].mark != ProbeMark::Upright;
     return lineColour(line);
 }
 
@@ -192,7 +192,7 @@ void ProbePanel::curves(std::span<const ProbePlot> plots, ImVec2 size) const {
                 list.AddLine(from, {to.x, from.y}, ink, 1.6f * width);
                 list.AddLine({to.x, from.y}, to, ink, 1.6f * width);
             } else {
-                list.AddLine(from, to, ink, width);
+                list.AddLine(from, to, ink, mark == ProbeMark::Heavy ? 2 * width : width);
             }
         }
     }

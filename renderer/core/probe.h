@@ -15,6 +15,7 @@ enum class ProbeMark {
     Dots,
     Band,    // half as wide as twice the value around the line before
     Dashed,  // joins the values as well
+    Heavy,   // and so, what matters most
     Step,    // holds each value until the next
     Upright, // of curves: a line from top to bottom at the first value
 };

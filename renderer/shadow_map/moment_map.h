@@ -90,7 +90,7 @@ struct MapSamplingParameters : ParameterGroup {
 // depths of a plane that rises by 1 a texel. At their mean such a bound is up to 0.17 on a lit slope, half a deviation
 // before it 0.04 and one deviation before it nothing; contacts leak light in return.
 double planeBias(const ParameterSet& set);
-double steeperBias(const ParameterSet& set); // 0.8 deviations: sharper bounds leave a plane less far before its mean
+double steeperBias(const ParameterSet& set); // 0.75 deviations: sharper bounds leave a plane less far before its mean
 
 enum class MomentFormat { Float32, Float16, Unorm16, Unorm16Optimised };
 inline constexpr std::string_view momentFormatNames[] = {"32f", "16f", "unorm16", "unorm16-optimised"};
@@ -185,7 +185,7 @@ struct MomentBias : Real {
                 .scale = Scale::Logarithmic,
                 .smallest = 1e-8,
                 .source = "Peters and Klein 2015, section 4.2 (2e-6 at 32 bits, 3e-5 at 16); signed: Peters et al. "
-                          "2017 (3e-7, 6e-5)",
+                          "2017 (3e-7 at 32 bits), ours (3e-5 at 16)",
                 .help = "Share of a fixed distribution that is mixed into the moments, so that rounding cannot make "
                         "them impossible. Too little speckles lit surfaces, too much lets light through at contacts.",
                 .defaultFrom = defaultFrom}) {}

@@ -437,7 +437,8 @@ Flow::Outputs resolve(Flow& flow, Scope scope, const Inputs& inputs, const Resol
                   .parameters = &parameters};
     for (const Read& read : reads) pass.reads.push_back(read);
     if (resolver.onto.empty())
-        pass.writes.push_back({resolver.writes, resolver.format, {size.x, size.y}, resolver.channels});
+        pass.writes.push_back(
+            {resolver.writes, resolver.format, resolver.extent.value_or(Extent{size.x, size.y}), resolver.channels});
     for (const ImageSpec& image : resolver.also) pass.writes.push_back(image);
     return flow.pass(scope, pass);
 }

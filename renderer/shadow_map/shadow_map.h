@@ -200,6 +200,7 @@ struct Resolver {
     Defines defines = {};
     Format format = Format::R32F;
     bool withMargin = false;             // as large as the geometry buffer, not as the picture
+    std::optional<Extent> extent = {};   // or of a size of its own
     FixedVector<ImageSpec, 3> also = {}; // further images
     FixedVector<Image, 2> onto = {};     // instead of what it writes: images that it changes
     FixedVector<TileSet, 2> marks = {};

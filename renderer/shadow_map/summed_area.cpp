@@ -10,6 +10,12 @@ namespace {
 constexpr MomentFormat stored = MomentFormat::Unorm16Optimised;
 constexpr DepthSign depthSign = DepthSign::Signed;
 
+constexpr Channel windowChannels[] = {
+    {"z", "z", "depth", Unit::DepthRange},
+    {"share", "F", "share of the filter's window in front of that depth", Unit::None, 0, 1},
+    {"fragment", "z_f", "depth of the probed pixel's surface, biased", Unit::DepthRange},
+    {"psi", "ψ", "what the technique makes of the window at that depth", Unit::None, 0, 1}};
+
 } // namespace
 
 double SoftMomentParameters::levelsOf(const ParameterSet& set) {
@@ -53,7 +59,7 @@ SummedArea drawSummedArea(Flow& flow, Scope scope, const Inputs& inputs, int cou
         return flow.pass(scope, pass)[1];
     };
     const Image rows = sumUp(depths.depth, true, "row-totals", "row-starts", "row-sums");
-    return {sumUp(rows, false, "column-totals", "column-starts", "summed-area"), depths.view};
+    return {sumUp(rows, false, "column-totals", "column-starts", "summed-area"), depths.depth, depths.view};
 }
 
 Image resolveSoft(Flow& flow, Scope scope, const Inputs& inputs, std::string_view shader, int count,
@@ -65,13 +71,45 @@ Image resolveSoft(Flow& flow, Scope scope, const Inputs& inputs, std::string_vie
     struct Block {
         ResolveConstants resolve;
         SummedAreaLookupBlock lookup;
-    } const block{resolveConstants(inputs, table.view),
-                  {.momentsFromSum = powers.momentsFromStored / static_cast<float>(windows.levels()),
-                   .momentsOffset = powers.momentsOffset,
-                   .empty = powers.momentsFromStored * farthest + powers.momentsOffset,
-                   .depth = {depthScale(depthSign), 0.5f * static_cast<float>(windows.widest), 0},
-                   .range = powers.range}};
-    return resolve(flow, scope, inputs, {.shader = shader, .constants = block}, {{"sums", table.sums}}, parameters);
+    } block{resolveConstants(inputs, table.view),
+            {.momentsFromSum = powers.momentsFromStored / static_cast<float>(windows.levels()),
+             .momentsOffset = powers.momentsOffset,
+             .empty = powers.momentsFromStored * farthest + powers.momentsOffset,
+             .depth = {depthScale(depthSign), 0.5f * static_cast<float>(windows.widest), 0},
+             .range = powers.range}};
+    PassReads reads{{"sums", table.sums}};
+    if (inputs.inspection.probe) {
+        Block probed = block;
+        probed.lookup.probed = {*inputs.inspection.probe, 0, 0};
+        reads.push_back({"shadowMap", table.depths});
+        resolve(flow, scope, inputs,
+                {.shader = shader,
+                 .constants = probed,
+                 .pass = "kernel-probe",
+                 .writes = "kernel-depths",
+                 .channels = windowChannels,
+                 .defines = {{"PROBED_WINDOW"}},
+                 .format = Format::RGBA32F,
+                 .extent = Extent{probeColumns, 1}},
+                reads, parameters);
+        reads.pop_back();
+    }
+    return resolve(flow, scope, inputs, {.shader = shader, .constants = block}, reads, parameters);
+}
+
+std::span<const ProbePlot> windowPlots() {
+    static constexpr ProbeSeries series[] = {{"kernel-depths.z", "z"},
+                                             {"kernel-depths.share", "F(z), the window", ProbeMark::Step},
+                                             {"kernel-depths.fragment", "z_f, the fragment", ProbeMark::Upright},
+                                             {"kernel-depths.psi", "ψ, as it is set", ProbeMark::Heavy}};
+    static constexpr ProbePlot plots[] = {
+        {ProbePlot::Kind::Curves, "The window's depths",
+         "What share of the window that the filter takes lies in front of a depth, each held against the receiver's "
+         "own "
+         "plane, and what the moments of the window's cells make of it. Heavy: as it is set. Where a curve crosses the "
+         "fragment's line is its ψ.",
+         series, "Depth z", "ψ"}};
+    return plots;
 }
 
 } // namespace penumbra

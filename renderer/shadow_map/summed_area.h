@@ -8,7 +8,7 @@
 namespace penumbra {
 
 #include "shaders/shared/summed_area.glsl.h"
-static_assert(sizeof(SummedAreaBlock) == 96 && sizeof(SummedAreaLookupBlock) == 128);
+static_assert(sizeof(SummedAreaBlock) == 96 && sizeof(SummedAreaLookupBlock) == 144);
 
 // Of techniques that look at windows of such a table; see shaders/soft_moments.glsl.
 struct SoftMomentParameters : ParameterGroup {
@@ -61,15 +61,17 @@ struct SoftMomentParameters : ParameterGroup {
 // The first two or four powers of depths in [−1, 1]; from one map texel 8 or 16 bytes in either of two tables, and 1/16
 // of that for runs.
 struct SummedArea {
-    Image sums;
+    Image sums, depths;
     LightViewBlock view;
 };
 SummedArea drawSummedArea(Flow& flow, Scope scope, const Inputs& inputs, int count, const ShadowMapDescription& map,
                           const SoftMomentParameters& windows);
 
-// The pass from such a table to ψ: a shader that includes soft_moments.glsl.
+// The pass from such a table to ψ: a shader that includes soft_moments.glsl. Where a pixel is probed another pass tells
+// of its filter's window, for windowPlots().
 Image resolveSoft(Flow& flow, Scope scope, const Inputs& inputs, std::string_view shader, int count,
                   const SummedArea& table, const SoftMomentParameters& windows, const ParameterSet& parameters,
                   double alpha = 0);
+std::span<const ProbePlot> windowPlots();
 
 } // namespace penumbra

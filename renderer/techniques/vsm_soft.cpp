@@ -21,6 +21,7 @@ class VsmSoft final : public Technique {
 public:
     ParameterSet& parameters() override { return parameters_; }
     std::optional<TextureReads> readsPerPixel() const override { return parameters_.windows.reads(); }
+    std::span<const ProbePlot> probePlots() const override { return windowPlots(); }
     Image build(Flow& flow, Scope scope, const Inputs& inputs) const override {
         const Parameters& p = parameters_;
         const SummedArea table = drawSummedArea(flow, scope, inputs, 2, p.map.describe(), p.windows);

@@ -11,6 +11,9 @@ vec4 powersOf(float z)
     return vec4(z, square, square * z, square * square);
 }
 
+// A share of the depths, whatever rounding has made of it: in [0, 1], and 0 for NaN.
+float asShare(float psi) { return psi > 0.0f ? min(psi, 1.0f) : 0.0f; }
+
 // Cantelli's inequality for b = E(z, z²): the least ψ that any depths of these moments have.
 float varianceBound(vec2 b, float z_f, float leastVariance)
 {
@@ -117,7 +120,8 @@ ThreeAtoms threeAtoms(Standardised s, float v)
     return a;
 }
 
-// What lies in front of v: nothing, the lowest atom, or both others. Weight times place stays finite where the atom does not.
+// What lies in front of v, as rounding leaves it: nothing, the lowest atom, or both others. Weight times place stays finite
+// where the atom does not.
 InFront inFrontOf(ThreeAtoms a)
 {
     bool farIsLowest = a.perFar < 0.0f;
@@ -126,14 +130,13 @@ InFront inFrontOf(ThreeAtoms a)
     float apart = fma(-a.near, a.perFar, 1.0f);
     float far = -fma(a.others, a.near, a.weight * a.v) / apart; // its weight times its place; the mean of all three is 0
     float near = fma(a.weight * a.v, a.perFar, a.others) / apart; // its weight
-    float psi = none ? 0.0f : both ? a.others : farIsLowest ? a.perFar * far : near;
     InFront f;
-    f.psi = psi > 0.0f ? min(psi, 1.0f) : 0.0f; // 0 for NaN
+    f.psi = none ? 0.0f : both ? a.others : farIsLowest ? a.perFar * far : near;
     f.moment = both ? -a.weight * a.v : farIsLowest ? far : near * a.near;
     return f;
 }
 
-float weightInFront(ThreeAtoms a) { return inFrontOf(a).psi; }
+float weightInFront(ThreeAtoms a) { return asShare(inFrontOf(a).psi); }
 
 // Hamburger's moment problem (Peters and Klein 2015, algorithm 3): the least ψ of depths anywhere on the real line.
 float hamburgerBound(vec4 b, float z_f, DepthRange range)
@@ -146,6 +149,7 @@ InFront hamburgerInFront(vec4 b, float z_f, DepthRange range)
 {
     Standardised s = standardised(b, range);
     InFront f = inFrontOf(threeAtoms(s, (z_f - s.mean) * s.perSigma));
+    f.psi = asShare(f.psi);
     // Between the near end and the fragment, whatever rounding says; 0 for NaN.
     float moment = fma(f.psi, s.mean, f.moment / s.perSigma);
     f.moment = f.psi > 0.0f ? clamp(moment, f.psi * range.low, f.psi * z_f) : 0.0f;
@@ -158,9 +162,9 @@ float cubicMean(Standardised s, float p, float q, float r)
     return s.skew - (p + q + r) - p * q * r;
 }
 
-// Hausdorff's moment problem: the least ψ of depths in [low, high]. Where one of the three atoms falls outside, the least is
+// Hausdorff's moment problem: the least ψ of depths in [low, high], as rounding leaves it. Where one of the three atoms falls outside, the least is
 // that of four: at the fragment, at either end, and one more.
-float hausdorffBound(vec4 b, float z_f, DepthRange range)
+float hausdorffLeast(vec4 b, float z_f, DepthRange range)
 {
     Standardised s = standardised(b, range);
     float inside = clamp(z_f, range.low + 1e-6f, range.high); // below the first atom nothing can be in front
@@ -187,6 +191,7 @@ float hausdorffBound(vec4 b, float z_f, DepthRange range)
 
     // Never less than of depths anywhere.
     float anywhere = weightInFront(a);
-    float psi = z_f <= range.low ? 0.0f : three || !(four > anywhere) ? anywhere : four;
-    return psi > 0.0f ? min(psi, 1.0f) : 0.0f; // 0 for NaN
+    return z_f <= range.low ? 0.0f : three || !(four > anywhere) ? anywhere : four;
 }
+
+float hausdorffBound(vec4 b, float z_f, DepthRange range) { return asShare(hausdorffLeast(b, z_f, range)); }

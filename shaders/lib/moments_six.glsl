@@ -96,7 +96,8 @@ FourAtoms fourAtoms(Recurrence r, float z_f)
     return atoms;
 }
 
-float sixMomentsBound(SixMoments m, float z_f, vec3 least)
+// As rounding leaves it.
+float sixMomentsLeast(SixMoments m, float z_f, vec3 least)
 {
     FourAtoms atoms = fourAtoms(recurrenceOf(m, least), z_f);
     float inFront = 0.0f;
@@ -105,6 +106,7 @@ float sixMomentsBound(SixMoments m, float z_f, vec3 least)
         all += atoms.weights[i];
         inFront += atoms.s[i] < 0.0f ? atoms.weights[i] : 0.0f;
     }
-    float psi = (1.0f - atoms.weight) * inFront / max(all, 1e-30f);
-    return psi > 0.0f ? min(psi, 1.0f) : 0.0f; // 0 for NaN
+    return (1.0f - atoms.weight) * inFront / max(all, 1e-30f);
 }
+
+float sixMomentsBound(SixMoments m, float z_f, vec3 least) { return asShare(sixMomentsLeast(m, z_f, least)); }

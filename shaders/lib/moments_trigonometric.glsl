@@ -109,7 +109,7 @@ float weightAt(float x, float z_f, float s0, vec2 s1)
 }
 
 // b = E (sin 2πz, cos 2πz, sin 4πz, cos 4πz)
-float trigonometricBound(vec4 b, float depth, float leastPivot)
+float trigonometricLeast(vec4 b, float depth, float leastPivot)
 {
     float z_f = clamp(depth, 1e-4f, 1.0f - 1e-4f);
     Toeplitz t = toeplitz(b, leastPivot);
@@ -168,6 +168,7 @@ float trigonometricBound(vec4 b, float depth, float leastPivot)
     float w_f = dot(rest - vec2(left, 0.0f), apart) / dot(apart, apart);
     float least = min(min(w_first, w_second), min(w_f, left - w_f));
     bool before = delta > 0.0f && s0 < 0.0f && abs(cosine) < 1.0f && first > 0.0f && least > -1e-6f;
-    psi = before ? min(psi, s0 / p) : psi;
-    return psi > 0.0f ? min(psi, 1.0f) : 0.0f; // 0 for NaN
+    return before ? min(psi, s0 / p) : psi;
 }
+
+float trigonometricBound(vec4 b, float depth, float leastPivot) { return asShare(trigonometricLeast(b, depth, leastPivot)); }

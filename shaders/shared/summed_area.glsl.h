@@ -18,4 +18,5 @@ struct SummedAreaLookupBlock {
     vec4 empty; // the moments where nothing casts, the bias included
     vec4 depth; // xy: as above; z = half size of the widest window [texels]
     vec4 range; // DepthRange of lib/moments.glsl
+    ivec4 probed; // xy: the pixel that is looked at closely
 };

@@ -9,7 +9,7 @@ const float tolerance = 0.05;
 // The kernel's Gaussian over comparisons with the receiver's plane, bilinear as the map's lookup is.
 float compared(Receiver r, int half_n)
 {
-    Lookup l = makeLookup(r, depthBias, slopeBias, true, false);
+    Lookup l = atProbedDepth(makeLookup(r, depthBias, slopeBias, true, false));
     vec2 corner = floor(l.texel - 0.5);
     vec2 f = l.texel - 0.5 - corner;
     float sum = 0.0;

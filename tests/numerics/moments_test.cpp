@@ -2,10 +2,9 @@
 // Bounds from moments against values worked out with many digits, against linear programming, against the true ψ of
 // random distributions, and float against double.
 #include "tests/catch.h"
+#include "tests/numerics/algorithm1.h"
 #include "tests/numerics/glsl_cpp.h"
 #include "tests/numerics/moments_golden.h"
-
-#include <glpk.h>
 
 #include <algorithm>
 #include <map>
@@ -15,6 +14,7 @@
 
 namespace {
 
+namespace test = penumbra::test;
 using glm::dvec2;
 using glm::dvec4;
 
@@ -113,71 +113,17 @@ f32::DepthRange rangeOf(double alpha) {
 }
 f32fused::DepthRange alike(const f32::DepthRange& r) { return {r.low, r.high, r.leastVariance, r.leastPivot}; }
 
-// Weights of as many atoms as there are moments that have them, by elimination with more digits than the solver has.
-std::vector<long double> weightsOf(const std::vector<double>& atoms, const std::vector<double>& moments) {
-    const size_t n = atoms.size(), equations = moments.size();
-    std::vector<std::vector<long double>> rows(equations, std::vector<long double>(n + 1));
-    for (size_t k = 0; k < equations; ++k) {
-        for (size_t j = 0; j < n; ++j) rows[k][j] = std::pow(static_cast<long double>(atoms[j]), static_cast<int>(k));
-        rows[k][n] = moments[k];
-    }
-    for (size_t j = 0; j < n; ++j) {
-        const auto larger = [&](const auto& p, const auto& q) { return std::abs(p[j]) < std::abs(q[j]); };
-        std::swap(rows[j], *std::max_element(rows.begin() + static_cast<std::ptrdiff_t>(j), rows.end(), larger));
-        for (size_t k = 0; k < equations; ++k) {
-            if (k == j) continue;
-            const long double factor = rows[k][j] / rows[j][j];
-            for (size_t i = j; i <= n; ++i) rows[k][i] -= factor * rows[j][i];
-        }
-    }
-    std::vector<long double> weights;
-    for (size_t j = 0; j < n; ++j) weights.push_back(rows[j][n] / rows[j][j]);
-    return weights;
-}
-
-// The least mass in front of v that atoms at `grid` can have with the moments E vᵏ, k = 0, 1 ... Columns are scaled,
-// since powers of far atoms make a solver fail; which atoms are needed is the solver's answer, their weights are worked
-// out again.
+// The least mass in front of v that atoms at `grid` can have with the moments E vᵏ, k = 0, 1 ...
 double leastMass(std::vector<double> grid, double v, const std::vector<double>& moments) {
     std::sort(grid.begin(), grid.end());
     grid.erase(std::unique(grid.begin(), grid.end()), grid.end());
-    glp_prob* problem = glp_create_prob();
-    glp_set_obj_dir(problem, GLP_MIN);
-    const int count = static_cast<int>(moments.size());
-    glp_add_rows(problem, count);
-    for (int k = 0; k < count; ++k) {
-        const double moment = moments[static_cast<size_t>(k)];
-        glp_set_row_bnds(problem, k + 1, GLP_FX, moment, moment);
+    test::Algorithm1 problem(moments);
+    for (const double u : grid) {
+        test::Column column{.inFront = u < v};
+        for (size_t k = 0; k < moments.size(); ++k) column.rows[k] = std::pow(u, static_cast<int>(k));
+        problem.add(column);
     }
-    glp_add_cols(problem, static_cast<int>(grid.size()));
-    for (size_t j = 0; j < grid.size(); ++j) {
-        const int column = static_cast<int>(j) + 1;
-        const double scale = 1 / (1 + std::pow(grid[j], count - 1));
-        const int rows[] = {0, 1, 2, 3, 4, 5, 6, 7};
-        double values[8];
-        for (int k = 0; k < count; ++k) values[k + 1] = scale * std::pow(grid[j], k);
-        glp_set_mat_col(problem, column, count, rows, values);
-        glp_set_col_bnds(problem, column, GLP_LO, 0, 0);
-        glp_set_obj_coef(problem, column, grid[j] < v ? scale : 0);
-    }
-    glp_smcp options;
-    glp_init_smcp(&options);
-    options.msg_lev = GLP_MSG_OFF;
-    options.tol_bnd = options.tol_dj = 1e-11;
-    options.tm_lim = 1000;
-    const bool solved = glp_simplex(problem, &options) == 0 && glp_get_status(problem) == GLP_OPT;
-    std::vector<double> atoms;
-    for (size_t j = 0; j < grid.size(); ++j)
-        if (glp_get_col_stat(problem, static_cast<int>(j) + 1) == GLP_BS) atoms.push_back(grid[j]);
-    glp_delete_prob(problem);
-    if (!solved) return NAN;
-    const std::vector<long double> weights = weightsOf(atoms, moments);
-    long double least = 0;
-    for (size_t j = 0; j < atoms.size(); ++j) {
-        if (!(weights[j] > -1e-6L)) return NAN; // the solver's tolerance let a wrong set of atoms pass
-        least += atoms[j] < v ? weights[j] : 0;
-    }
-    return static_cast<double>(least);
+    return problem.solve();
 }
 
 // Standardised depths for a linear program: even over where depths are likely, and those that must be among them.
@@ -355,6 +301,50 @@ TEST_CASE("the bound of six powers is what linear programming finds, sharper tha
     CHECK(compared > 500);
     CHECK(unsolved < 0.1 * compared);
     CHECK(worst < 1e-6);
+}
+
+TEST_CASE("algorithm 1 of any functions finds the bounds that are known in closed form") {
+    using Function = double (*)(double);
+    const std::vector<Function> powers{[](double z) { return z; }, [](double z) { return z * z; },
+                                       [](double z) { return z * z * z; }, [](double z) { return z * z * z * z; }};
+    const std::vector<Function> chebyshev{[](double z) { return 2 * z - 1; },
+                                          [](double z) { return std::cos(2 * std::acos(2 * z - 1)); },
+                                          [](double z) { return std::cos(3 * std::acos(2 * z - 1)); },
+                                          [](double z) { return std::cos(4 * std::acos(2 * z - 1)); }};
+    const std::vector<Function> turns{
+        [](double z) { return std::sin(2 * M_PI * z); }, [](double z) { return std::cos(2 * M_PI * z); },
+        [](double z) { return std::sin(4 * M_PI * z); }, [](double z) { return std::cos(4 * M_PI * z); }};
+    Distributions distributions(12);
+    double worstPowers = 0, worstSpan = 0, worstTurns = 0;
+    int unsolved = 0, compared = 0;
+    for (int i = 0; i < 150; ++i) {
+        const Distribution d = distributions.next();
+        const double z_f = distributions.fragment(d);
+        std::vector<test::Atom> atoms;
+        for (const Distribution::Atom& atom : d.atoms) atoms.push_back({atom.z, atom.weight});
+        const dvec4 b = d.powers();
+        const f64::Standardised s = f64::standardised(b, exact);
+        const double variance = 1 / (s.perSigma * s.perSigma);
+        if (std::min(variance, s.spread * variance * variance) < 1e-8) continue;
+        const double four = test::sharpBound(powers, atoms, z_f), same = test::sharpBound(chebyshev, atoms, z_f);
+        const double turning = test::sharpBound(turns, atoms, z_f);
+        if (!std::isfinite(four + same + turning)) {
+            ++unsolved;
+            continue;
+        }
+        ++compared;
+        CAPTURE(i, z_f, four, same, turning);
+        worstPowers = std::max(worstPowers, std::abs(four - f64::hausdorffBound(b, z_f, exact)));
+        worstSpan = std::max(worstSpan, std::abs(four - same));
+        const dvec4 t = d.mean([](double z) { return f64::trigonometricOf(z); });
+        worstTurns = std::max(worstTurns, std::abs(turning - f64::trigonometricBound(t, z_f, 1e-300)));
+    }
+    CAPTURE(compared, unsolved, worstPowers, worstSpan, worstTurns);
+    CHECK(compared > 50);
+    CHECK(unsolved < 0.05 * compared);
+    CHECK(worstPowers < 1e-6);
+    CHECK(worstSpan < 1e-6); // the same functions, otherwise combined
+    CHECK(worstTurns < 1e-5);
 }
 
 TEST_CASE("layers of a square wave add up to its series") {

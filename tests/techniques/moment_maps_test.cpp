@@ -4,6 +4,9 @@
 #include "tests/catch.h"
 #include "tests/support/scenes.h"
 
+#include <fmt/format.h>
+
+#include <algorithm>
 #include <cmath>
 #include <string>
 #include <vector>
@@ -110,7 +113,7 @@ TEST_CASE("two surfaces give every filterable map its golden ψ") {
          2e-3},
         {"msm-hamburger", {"format=32f", "depth-range=signed"}, {{0.5, 0.499999400001}, {0.9, 0.999999506904}}, 1e-4},
         {"msm-hamburger",
-         {"format=unorm16-optimised", "depth-range=signed"},
+         {"format=unorm16-optimised", "depth-range=signed", "moment-bias=6e-5"},
          {{0.5, 0.499819382169}, {0.9, 0.999851543893}},
          2e-3},
         {"msm-hausdorff", {"format=32f"}, {{0.5, 0.499991000288}, {0.6, 0.499994489961}, {0.95, 0.99999641267}}, 2e-4},
@@ -202,4 +205,176 @@ TEST_CASE("a mip chain and several depths a texel change nothing where a map is 
         CHECK(psi(technique, {"mipmaps=true"}) == Approx(plain).margin(0.02));
         CHECK(psi(technique, {"mipmaps=true", "anisotropy=16"}) == Approx(plain).margin(0.02));
     }
+}
+
+TEST_CASE("a probed pixel's heavy curve is the technique itself: it meets the fragment at the picture's ψ") {
+    // A corner of the box's shadow, where kernels hold the box and the floor.
+    for (const Card* card : catalogue()) {
+        Session s = quickSession(SceneBuilder().floor(3).box({-1, 0, -1}, {0, 1, 0}).build(), card->id);
+        s.light.position = {1.5f, 3, 1};
+        const std::span<const ProbePlot> plots = s.techniques.technique().probePlots();
+        const auto curves = std::find_if(plots.begin(), plots.end(),
+                                         [](const ProbePlot& p) { return p.kind == ProbePlot::Kind::Curves; });
+        if (curves == plots.end()) continue;
+        CAPTURE(card->id);
+        const auto heavy = std::find_if(curves->series.begin(), curves->series.end(),
+                                        [](const ProbeSeries& series) { return series.mark == ProbeMark::Heavy; });
+        REQUIRE(heavy != curves->series.end());
+        // Of a series: its channel in every column.
+        const auto valuesOf = [&](std::string_view channel) {
+            const size_t dot = channel.find('.');
+            const Flow& flow = renderer().flow();
+            const Image image = *flow.find(std::string(card->id) + "." + std::string(channel.substr(0, dot)));
+            const std::span<const Channel> channels = flow.spec(image).channels;
+            size_t k = 0;
+            while (channels[k].name != channel.substr(dot + 1)) ++k;
+            const Renderer::Pixels pixels = renderer().read(image);
+            std::vector<float> values;
+            for (size_t i = k; i < pixels.values.size(); i += static_cast<size_t>(pixels.channels))
+                values.push_back(pixels.values[i]);
+            return values;
+        };
+        // With the usual values, and with others that change the curve.
+        const std::pair<const char*, const char*> others[] = {{"msm-hamburger", "moment-bias=1e-2"},
+                                                              {"evsm", "positive-exponent=2"},
+                                                              {"lvsm", "layers=1"},
+                                                              {"convolution", "terms=2"},
+                                                              {"esm", "fallback=false"},
+                                                              {"msm-soft", "cells=1"}};
+        std::vector<float> usual;
+        for (const char* setting : {"", std::find_if(std::begin(others), std::end(others) - 1, [&](const auto& other) {
+                                            return other.first == card->id;
+                                        })->second}) {
+            if (*setting != 0) {
+                if (!s.techniques.parameters().find(
+                        std::string_view(setting).substr(0, std::string_view(setting).find('='))))
+                    continue;
+                s.techniques.assign(setting);
+            }
+            const ShadowImage plain = draw(s);
+            // The pixel that is nearest to being half in shadow.
+            glm::ivec2 half(0);
+            for (int y = 0; y < plain.psi.height; ++y)
+                for (int x = 0; x < plain.psi.width; ++x)
+                    if (std::abs(plain.at(x, y) - 0.5f) < std::abs(plain.at(half.x, half.y) - 0.5f)) half = {x, y};
+            const float shown = plain.at(half.x, half.y);
+            CAPTURE(setting, half.x, half.y, shown);
+            CHECK(std::abs(shown - 0.5f) < 0.45f);
+            renderer().inspect({.probe = glm::ivec2(half.x, plain.psi.height - 1 - half.y)});
+            (void)draw(s);
+            renderer().inspect({});
+            const std::vector<float> z = valuesOf(curves->series[0].channel), psi = valuesOf(heavy->channel);
+            const auto own = std::find(z.begin(), z.end(), valuesOf(curves->series[2].channel)[0]);
+            REQUIRE(own != z.end());
+            CHECK(psi[static_cast<size_t>(own - z.begin())] == Approx(shown).margin(1e-4));
+            CHECK(psi.front() < 0.01f); // in front of all
+            if (*setting != 0) CHECK(psi != usual);
+            usual = psi;
+        }
+    }
+    CHECK(driverMessages().empty());
+}
+
+TEST_CASE("an exponent at its format's limit gives a finite ψ, and one beyond is refused with the limit") {
+    struct Limit {
+        const char *technique, *format, *parameter;
+        double largest, beyond;
+    };
+    for (const Limit& limit :
+         {Limit{"esm", "32f", "exponent", 174, 0}, Limit{"esm", "16f", "exponent", 19.4, 20},
+          Limit{"evsm", "32f", "positive-exponent", 44, 0}, Limit{"evsm", "16f", "positive-exponent", 5.54, 6},
+          Limit{"evsm", "16f", "negative-exponent", 5.54, 6}}) {
+        CAPTURE(limit.technique, limit.format, limit.parameter);
+        Session s = quickSession(SceneBuilder().floor(3).box({-1, 0, -1}, {0, 1, 0}).build(), limit.technique);
+        ParameterSet& set = s.techniques.parameters();
+        set.at("format").setText(limit.format);
+        set.at(limit.parameter).set(limit.largest);
+        const std::vector<float> psi = draw(s).psi.values;
+        CHECK(std::all_of(psi.begin(), psi.end(), [](float v) { return v >= 0 && v <= 1; }));
+        const Image moments = *renderer().flow().find(std::string(limit.technique) + ".moments");
+        const std::vector<float> stored = renderer().read(moments).values;
+        CHECK(std::all_of(stored.begin(), stored.end(), [](float v) { return std::isfinite(v); }));
+        if (limit.beyond == 0) {
+            CHECK_THROWS_WITH(set.at(limit.parameter).set(limit.largest + 1),
+                              contains(fmt::format("{:g}", limit.largest)));
+            continue;
+        }
+        set.at(limit.parameter).set(limit.beyond);
+        CHECK_THROWS_WITH(renderer().render(s),
+                          contains(limit.parameter) && contains(fmt::format("{:g}", limit.largest)));
+    }
+}
+
+TEST_CASE("what lies outside of a filtered map is lit, whatever the kernel") {
+    const auto scene =
+        std::make_shared<Scene>(*SceneBuilder().floor(3).box({-0.4f, 0, -0.4f}, {0.4f, 1, 0.4f}).build());
+    for (size_t m = 0; m < 2; ++m) scene->meshes[m].primitives[0].shadesItself = false; // the floor: no texels for it
+    for (const Card* card : catalogue()) {
+        Session s = quickSession(scene, card->id);
+        Parameter* const kernel = s.techniques.parameters().find("kernel");
+        if (!kernel || s.techniques.technique().probePlots().empty()) continue;
+        constexpr int size = 64; // texels along a side
+        s.techniques.parameters().at("map-size").set(size);
+        s.light = {.shape = LightShape::Directional, .position = {0, 9, 0}, .target = {0, 0, 0}, .size = {0, 0}};
+        for (const double width : {1.0, 31.0}) {
+            kernel->set(width);
+            CAPTURE(card->id, width);
+            const ShadowImage image = draw(s);
+            const LightViewBlock map = lightView(s.light, renderer().state().occluders(), {.size = size});
+            // Filtered, casters reach half a kernel beyond the map.
+            const float beyond = map.window.z * (1 + (float(width) + 3) / size);
+            int outside = 0, wrong = 0;
+            for (int y = 0; y < image.psi.height; ++y)
+                for (int x = 0; x < image.psi.width; ++x) {
+                    if (!image.surface(x, y)) continue;
+                    const glm::vec4 p = map.lightFromWorld * glm::vec4(image.positionWorld(x, y), 1);
+                    if (std::abs(p.x - map.window.x) < beyond && std::abs(p.y - map.window.y) < beyond) continue;
+                    ++outside;
+                    wrong += image.at(x, y) != 0;
+                }
+            CHECK(outside > 100);
+            CHECK(wrong == 0);
+        }
+    }
+    CHECK(driverMessages().empty());
+}
+
+TEST_CASE("holes of masked casters are holes in every filtered map") {
+    // A plate above the floor, of which the right half is cut out.
+    auto scene =
+        std::make_shared<Scene>(*SceneBuilder().floor(3).quad({-1, 1, 1}, {1, 1, 1}, {1, 1, -1}, {-1, 1, -1}).build());
+    scene->textures.push_back({.name = "half",
+                               .width = 2,
+                               .rgba = {255, 255, 255, 255, 255, 255, 255, 0},
+                               .wrapU = Wrap::ClampToEdge,
+                               .magnifyNearest = true});
+    scene->materials.push_back({.texture = 0, .masked = true, .doubleSided = true});
+    for (size_t m = 2; m < 4; ++m) {
+        Primitive& p = scene->meshes[m].primitives[0];
+        p.material = 1;
+        for (uint32_t v = p.firstVertex; v < p.firstVertex + 3; ++v)
+            scene->uvs[v] = {0.5f * scene->positions[v].x + 0.5f, 0.5f};
+    }
+    for (const Card* card : catalogue()) {
+        Session s = quickSession(scene, card->id);
+        const std::span<const ProbePlot> plots = s.techniques.technique().probePlots();
+        if (plots.empty() || plots[0].kind != ProbePlot::Kind::Curves) continue;
+        s.light = {.shape = LightShape::Directional, .position = {0, 9, 0}, .target = {0, 0, 0}, .size = {0.1f, 0}};
+        s.camera = {.eye = {0, 0.6f, 2.5f}, .target = {0, 0, 0}, .fovY = 50}; // below the plate
+        CAPTURE(card->id);
+        const ShadowImage image = draw(s);
+        int dark = 0, lit = 0, wrong = 0;
+        for (int y = 0; y < image.psi.height; ++y)
+            for (int x = 0; x < image.psi.width; ++x) {
+                if (!image.surface(x, y)) continue;
+                const glm::vec3 p = image.positionWorld(x, y);
+                if (p.y > 0.5f || std::abs(p.z) > 0.6f || std::abs(std::abs(p.x) - 0.5f) > 0.25f) continue;
+                ++(p.x < 0 ? dark : lit);
+                wrong += std::abs(image.at(x, y) - (p.x < 0 ? 1.0f : 0.0f)) > 0.03f;
+            }
+        CHECK(dark > 50);
+        CHECK(lit > 50);
+        CHECK(wrong == 0);
+    }
+    CHECK(driverMessages().empty());
 }

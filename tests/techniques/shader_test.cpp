@@ -80,7 +80,9 @@ TEST_CASE("every variant of every shader is valid GLSL 4.50 for glslangValidator
             s.display.show = Show::Lit;
             s.light.shape = shape;
             const auto check = [&] { forEachStage(s, validate); };
+            if (shape == LightShape::Rectangle) renderer().inspect({.probe = glm::ivec2(1, 1)});
             check();
+            renderer().inspect({});
             for (Parameter* p : s.techniques.parameters().all()) {
                 if (!p->spec().programConstant) continue;
                 for (double value = p->spec().min; value <= p->spec().max; ++value) {
