@@ -27,6 +27,7 @@ struct Occluder {
     bool closed = false;                     // a closed surface; see scene/closed_surface.h
     bool shadesItself = true;                // see scene/closed_surface.h
     bool moved = false;                      // its pose differs from the last frame's
+    int object = 0;                          // the number of the thing that it is part of, from 1; 0: of none
     std::span<const Bounds> partsWorld = {}; // that hold it more closely; empty: only boundsWorld does
 };
 

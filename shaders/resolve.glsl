@@ -58,6 +58,13 @@ bool lightBelowHorizon(vec3 positionLight, vec3 n)
     return directional ? n.z + spread <= 0.0 : spread - dot(n, positionLight) <= 0.0;
 }
 
+// What of a receiver depends on the point s of the light alone.
+void lookFrom(vec2 s, inout Receiver r)
+{
+    r.reference = referenceFromLight(vec3(r.positionLight.xy, -r.d), s, lightView.sample_reference.z, directional);
+    r.facing = directional ? dot(r.normalLight, vec3(s, 1.0)) : dot(r.normalLight, r.positionLight - vec3(s, 0.0));
+}
+
 // The pixel's receiver, moved along its normal by `normalOffset` texels. ψ is known to be 0 without a surface and behind
 // the light, 1 with the light below the horizon. There are no early returns here: a software renderer runs both sides of
 // every branch, and only loops of no rounds save it work. Fetches and stores outside the picture do nothing.
@@ -88,8 +95,7 @@ Receiver findReceiverOf(ivec2 pixel, float normalOffset)
 
     bool behind = !directional && r.positionLight.z >= 0.0;
     r.d = behind ? f : -r.positionLight.z;
-    r.reference = referenceFromLight(vec3(r.positionLight.xy, -r.d), s, f, directional);
-    r.facing = directional ? dot(r.normalLight, vec3(s, 1.0)) : dot(r.normalLight, r.positionLight - vec3(s, 0.0));
+    lookFrom(s, r);
     r.known = r.eyeDepth <= 0.0 || (behind && !below) ? 0.0 : below ? 1.0 : -1.0;
     return r;
 }

@@ -3,7 +3,12 @@
 #include "shared/view.glsl.h"
 #include "draws.glsl"
 
-layout(std140, binding = 0) uniform Constants { LightViewBlock lightView; };
+layout(std140, binding = 0) uniform Constants {
+    LightViewBlock lightView;
+#ifdef NEEDLESS
+    uvec4 needless; // a bit for each of the first things: it is not drawn
+#endif
+};
 
 #ifdef VERTEX_SHADER
 #if defined(RADIAL)
@@ -39,6 +44,10 @@ void main()
     z = (-dot(lightZ, positionWorld) - lightView.range.x) * lightView.range.z;
 #endif
     gl_Position = lightView.clipFromWorld * positionWorld;
+#ifdef NEEDLESS
+    uint thing = uint(drawObject) - 1u;
+    if (thing < 128u && (needless[thing >> 5] >> (thing & 31u) & 1u) != 0u) gl_Position = vec4(2.0, 2.0, 2.0, 1.0);
+#endif
 #ifdef SIGN_MOVERS
     bool moved = lastPositionModel != positionModel;
     for (int row = 0; row < 3; ++row) moved = moved || lastWorldFromModel[row] != worldFromModel[row];

@@ -83,7 +83,7 @@ private:
     int index_ = -1;
 };
 
-// One input of a pass; `sampler` is the name of the sampler in the shader.
+// One input of a pass; `sampler` is the name of the sampler in the shader, "name[0]" in an array of them.
 struct Read {
     std::string_view sampler;
     std::variant<std::monostate, Image, PastImage> image;
@@ -171,7 +171,7 @@ struct PassSpec {
     Stage stage = Stage::Resolve;
     std::string_view name; // kebab-case; with the scope it makes the label
     Work work;
-    FixedVector<Read, 12> reads = {};
+    FixedVector<Read, 16> reads = {};
     FixedVector<ImageSpec, 5> writes = {};
     FixedVector<Image, 2> onto = {};    // images of earlier passes that it changes, ahead of those it makes; nobody may
                                         // mean the earlier texels any more
@@ -206,7 +206,7 @@ public:
         Stage stage;
         int label;
         Work work;
-        FixedVector<Read, 12> reads;
+        FixedVector<Read, 16> reads;
         FixedVector<Image, 5> writes{}; // those of `onto` first
         FixedVector<TileSet, 2> marks;
         Constants constants;

@@ -111,6 +111,7 @@ bool sameConstants(const std::vector<uint32_t>& constants, const ParameterSet* p
 } // namespace
 
 bool Program::mentions(std::string_view word) const {
+    word = word.substr(0, word.find('['));
     for (size_t at = source_.find(word); at != std::string::npos; at = source_.find(word, at + 1))
         if ((at == 0 || !isWordCharacter(source_[at - 1])) && !isWordCharacter(source_[at + word.size()])) return true;
     return false;
@@ -167,30 +168,35 @@ void ProgramLibrary::build(Entry& entry) const {
         std::string name;
         GLint location;
         bool image;
+        int count; // of an array
     };
     std::vector<Uniform> found;
     GLint uniforms = 0;
     glGetProgramInterfaceiv(name, GL_UNIFORM, GL_ACTIVE_RESOURCES, &uniforms);
     for (GLuint i = 0; i < static_cast<GLuint>(uniforms); ++i) {
-        constexpr GLenum properties[] = {GL_TYPE, GL_LOCATION, GL_BLOCK_INDEX};
-        GLint values[3] = {};
-        glGetProgramResourceiv(name, GL_UNIFORM, i, 3, properties, 3, nullptr, values);
+        constexpr GLenum properties[] = {GL_TYPE, GL_LOCATION, GL_BLOCK_INDEX, GL_ARRAY_SIZE};
+        GLint values[4] = {};
+        glGetProgramResourceiv(name, GL_UNIFORM, i, 4, properties, 4, nullptr, values);
         if (values[2] != -1 || values[1] < 0) continue; // in a block
         char uniform[128] = {};
         glGetProgramResourceName(name, GL_UNIFORM, i, sizeof(uniform), nullptr, uniform);
         if (uniform == bandOriginUniform)
             program.bandOrigin_ = values[1];
         else
-            found.push_back({uniform, values[1], isImage(static_cast<GLenum>(values[0]))});
+            found.push_back({uniform, values[1], isImage(static_cast<GLenum>(values[0])), values[3]});
     }
     std::sort(found.begin(), found.end(), [](const Uniform& a, const Uniform& b) {
         return std::tuple(a.name == materialSampler, a.name) < std::tuple(b.name == materialSampler, b.name);
     });
     for (const Uniform& uniform : found) {
         auto& bindings = uniform.image ? program.images_ : program.samplers_;
-        const GLuint unit = static_cast<GLuint>(bindings.size());
-        glProgramUniform1i(name, uniform.location, static_cast<GLint>(unit));
-        bindings.push_back({uniform.name, unit});
+        for (int i = 0; i < uniform.count; ++i) { // of an array called "name[0]"
+            const GLuint unit = static_cast<GLuint>(bindings.size());
+            glProgramUniform1i(name, uniform.location + i, static_cast<GLint>(unit));
+            const std::string_view base = std::string_view(uniform.name).substr(0, uniform.name.find('['));
+            bindings.push_back(
+                {uniform.count > 1 || base != uniform.name ? fmt::format("{}[{}]", base, i) : uniform.name, unit});
+        }
     }
     GLint blocks = 0;
     glGetProgramInterfaceiv(name, GL_SHADER_STORAGE_BLOCK, GL_ACTIVE_RESOURCES, &blocks);

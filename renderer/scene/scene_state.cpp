@@ -80,7 +80,8 @@ void SceneState::measure(bool ground) {
         occluders_.push_back({.boundsWorld = posedBounds(*scene_, pose_, d.node, primitive(d)),
                               .closed = primitive(d).closed,
                               .shadesItself = primitive(d).shadesItself,
-                              .moved = moved(d)});
+                              .moved = moved(d),
+                              .object = 1 + static_cast<int>(d.node)});
         for (const Bounds& part : primitive(d).parts) parts_.push_back(transformed(part, pose_.worldFromNode[d.node]));
         occluders_.back().partsWorld = std::span(parts_).last(primitive(d).parts.size());
         moving_ = moving_ || occluders_.back().moved;

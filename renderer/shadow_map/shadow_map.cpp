@@ -146,7 +146,8 @@ Region before(const Bounds& box, vec2 halfLight, bool directional) {
 struct MapFit {
     float near, far, reference; // axial depths
     Window window;
-    float farthest = 1; // from any point of the light
+    float farthest = 1;     // from any point of the light
+    glm::uvec4 needless{0}; // a bit for each of the first things: it shades neither itself nor another
 };
 
 // Where corners fall on the reference plane, from the point s of the light. Parts before the near plane are moved onto
@@ -244,6 +245,9 @@ MapFit fitMap(const AreaLight& light, std::span<const Occluder> occluders, const
     const auto beyondNear = [&](const Corners& corners) {
         return std::any_of(corners.begin(), corners.end(), [&](vec3 c) { return directional || c.z >= fit.near; });
     };
+    const auto bit = [](int object) { return 1u << ((object - 1) % 32); };
+    const auto known = [](int object) { return object > 0 && object <= 128; };
+    glm::uvec4 shading(0);
     Window casters, receivers;
     const Bounds points = lightBounds(light);
     eachBox([&](const Corners& box, const Occluder& occluder, const Bounds& boxWorld) {
@@ -252,6 +256,7 @@ MapFit fitMap(const AreaLight& light, std::span<const Occluder> occluders, const
                       shadesOthers(occluder, boxWorld, occluders, shown, fromWorld, points, directional))) {
             const Window window = project(box, fit, s, directional);
             casters.add(window.min), casters.add(window.max);
+            if (known(occluder.object)) shading[(occluder.object - 1) / 32] |= bit(occluder.object);
         }
         const Corners seen = shown ? within(*shown, box) : box;
         if (!beyondNear(seen)) return;
@@ -264,6 +269,9 @@ MapFit fitMap(const AreaLight& light, std::span<const Occluder> occluders, const
         receivers.add(window.min - (half + s) * std::max(aside, 0.0f));
         receivers.add(window.max + (half - s) * std::max(aside, 0.0f));
     });
+    for (const Occluder& occluder : occluders)
+        if (few && known(occluder.object)) fit.needless[(occluder.object - 1) / 32] |= bit(occluder.object);
+    fit.needless &= ~shading;
     fit.window = casters.intersected(receivers);
     if (!directional) {
         const vec2 widest(widestTangent * fit.reference);
@@ -277,8 +285,8 @@ MapFit fitMap(const AreaLight& light, std::span<const Occluder> occluders, const
 
 vec2 gridShift(uint32_t i) { return r2Point(i) - 0.5f; }
 
-LightViewBlock lightView(const AreaLight& light, std::span<const Occluder> occluders,
-                         const ShadowMapDescription& description, const View* view) {
+static std::pair<LightViewBlock, glm::uvec4> fittedView(const AreaLight& light, std::span<const Occluder> occluders,
+                                                        const ShadowMapDescription& description, const View* view) {
     const LightSample s = description.sample;
     const int size = description.size;
     const bool directional = light.shape == LightShape::Directional, radial = description.metric != Metric::Axial;
@@ -323,10 +331,20 @@ LightViewBlock lightView(const AreaLight& light, std::span<const Occluder> occlu
     if (given != vec2(0)) far = std::max(far, near * (1 + 1e-4f));
     block.range = {near, far, 1 / (far - near), radial ? 1.0f : 0.0f};
     block.light = {half, size, 1.0f / static_cast<float>(size)};
-    return block;
+    return {block, fit.needless};
+}
+
+LightViewBlock lightView(const AreaLight& light, std::span<const Occluder> occluders,
+                         const ShadowMapDescription& description, const View* view) {
+    return fittedView(light, occluders, description, view).first;
 }
 
 namespace {
+
+struct NeedlessConstants {
+    LightViewBlock lightView;
+    glm::uvec4 needless;
+};
 
 // Whether the point of the light lies outside the bounds of every closed surface, so that their backs are never
 // nearest.
@@ -361,7 +379,7 @@ ShadowMap drawShadowMap(Flow& flow, Scope scope, const Inputs& inputs, const Sha
     ensure(layer >= 0 && layer < mostLayers, "a shadow map layer that there is not");
     ensure(layer == 0 || description.samples == 1, "layers are peeled from maps of one sample");
     ensure(!description.signMovers || (layer == 0 && description.format == Format::R32F), "a depth that has no sign");
-    const LightViewBlock view = lightView(inputs, description);
+    const auto [view, needless] = fittedView(inputs.light, inputs.occluders, description, &inputs.view);
     const Extent extent{.width = description.size, .height = description.size, .samples = description.samples};
     const std::string_view name = description.samples > 1 ? "shadow-map-samples" : names[layer];
     const bool nearestOnly = layer == 0 && description.faces == Faces::Casting && seesFromOutside(inputs, view);
@@ -380,6 +398,10 @@ ShadowMap drawShadowMap(Flow& flow, Scope scope, const Inputs& inputs, const Sha
     }
     if (description.signMovers) draw.defines.push_back({"SIGN_MOVERS"});
     PassSpec pass{.stage = Stage::ShadowMap, .name = name, .constants = view};
+    if (!description.all && needless != glm::uvec4(0)) {
+        draw.defines.push_back({"NEEDLESS"});
+        pass.constants = NeedlessConstants{view, needless};
+    }
     if (description.format != Format::Depth32F) {
         draw.defines.push_back({"COLOUR_DEPTH"});
         pass.writes.push_back({name, description.format, extent, description.signMovers ? signed_ : channels});

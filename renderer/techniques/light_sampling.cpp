@@ -3,9 +3,9 @@
 // 4.1): the mean of N hard shadows, each from another point of the light. With N to infinity it is ψ itself, but for
 // the resolution and the bias of the maps.
 //
-// The points are Halton's, so that any first n of them are spread evenly. A pixel counts the maps that hide the light
-// from it: whole numbers, exact in a float to 2^24, so that the mean of N maps is the same however many frames they
-// took. N maps, N texture reads a pixel.
+// The points are Sobol's, so that the first n of them are spread evenly, best where n is a power of two. A pixel counts
+// the maps that hide the light from it: whole numbers, exact in a float to 2^24, so that the mean of N maps is the same
+// however many frames they took. N maps, N texture reads a pixel.
 #include "renderer/core/hash.h"
 #include "renderer/core/technique.h"
 #include "renderer/shadow_map/shadow_map.h"
@@ -72,7 +72,7 @@ public:
         flow.repeat(std::min(perFrame, samples - done), [&](int i) {
             ShadowMapDescription description =
                 parameters_.map.describe(lightPoint(inputs.light, samplePoint(inputs.seed, done + i)));
-            description.square = false;
+            description.square = description.all = false;
             description.shift = gridShift(static_cast<uint32_t>(done + i));
             const ShadowMap map = drawShadowMap(flow, scope, inputs, description);
             counted = count(flow, scope, inputs, map, counted);
@@ -93,10 +93,7 @@ public:
     }
 
 private:
-    // Halton's i-th point after the corner; another seed shifts them all.
-    static glm::vec2 samplePoint(uint32_t seed, int i) {
-        return glm::fract(haltonPoint(static_cast<uint32_t>(i) + 1) + haltonPoint(seed));
-    }
+    static glm::vec2 samplePoint(uint32_t seed, int i) { return sobolPoint(static_cast<uint32_t>(i), seed); }
 
     Image count(Flow& flow, Scope scope, const Inputs& inputs, const ShadowMap& map,
                 const std::variant<std::monostate, Image, PastImage>& before) const {

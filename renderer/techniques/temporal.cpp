@@ -25,8 +25,8 @@ namespace penumbra {
 namespace {
 
 constexpr int mostTaps = 64;
-constexpr int mostMaps = 8;     // a frame
-constexpr int wellSampled = 256; // steps after which one map a frame is enough
+constexpr int mostMaps = 12;     // a frame: shaders may read 16 images
+constexpr int wellSampled = 257; // steps after which one map a frame is enough: the light's centre, and 2^8 points
 constexpr int32_t mostHalfs = 2048, mostFloats = 1 << 24; // whole numbers that count without rounding
 
 enum class Sequence { Halton, R2, Random, Sobol };
@@ -219,10 +219,10 @@ struct FilterParameters : ParameterGroup {
 struct Parameters : ParameterSet {
     Choice<Sequence> sequence{*this,
                               {.id = "sequence",
-                               .value = double(Sequence::Halton),
-                               .source = "Scherzer 2009, 4; R2: Roberts 2018",
+                               .value = double(Sequence::Sobol),
+                               .source = "halton: Scherzer 2009, 4; r2: Roberts 2018; sobol: Owen 1995",
                                .help = "Order of the light's points. Even ones converge about as n^-3/4, random ones "
-                                       "as n^-1/2.",
+                                       "as n^-1/2. Sobol's are evenest where n is a power of two.",
                                .choices = sequenceNames}};
     Choice<Start> start{*this,
                         {.id = "start",
@@ -420,8 +420,9 @@ struct Parameters : ParameterSet {
                         .max = mostMaps,
                         .unit = Unit::Samples,
                         .source = "Scherzer 2009 (1)",
-                        .help = "Shadow maps a frame, and as many tests, while nothing changes and until there are 256. "
-                                "A view at rest is done in fewer, dearer frames."}};
+                        .help =
+                            "Shadow maps a frame, and as many tests, while nothing changes and until there are 256. "
+                            "A view at rest is done in fewer, dearer frames."}};
     Real overscan{*this,
                   {.id = "overscan",
                    .value = 5,
@@ -489,7 +490,9 @@ constexpr std::string_view stateNames[] = {"no surface",
                                            "new: a mover's shadow",
                                            "a mover's shadow has left"};
 constexpr Channel testChannels[] = {
-    {"tau", "τ_n", "hard shadow test of this frame, a mean where there are several; 1: the point of the light is hidden", Unit::None, 0, 1},
+    {"tau", "τ_n",
+     "hard shadow test of this frame, a mean where there are several; 1: the point of the light is hidden", Unit::None,
+     0, 1},
     {"event", "", "what became of the history in this frame", Unit::None, 0, std::size(eventNames) - 1, eventNames},
     {"light-x", "x", "point of the light that was tested, in half widths from its centre", Unit::None, -1, 1},
     {"light-y", "y", "point of the light that was tested, in half heights from its centre", Unit::None, -1, 1}};
@@ -545,7 +548,7 @@ public:
         std::optional<ShadowMap> central;
         if (drawsCentre(inputs)) {
             ShadowMapDescription description = parameters_.map.describe();
-            description.square = false;
+            description.square = description.all = false;
             signMovers(description);
             central = drawShadowMap(flow, {scope.instance, "temporal-centre"}, inputs, description);
         }
@@ -605,13 +608,15 @@ private:
 
     // Several where nothing changes, unless somebody watches test by test.
     int mapsOf(const Inputs& inputs, const PastImage& past) const {
-        return stands(inputs, past) && !inputs.inspection.probe && past.steps() < wellSampled ? parameters_.mapsAtRest : 1;
+        if (!stands(inputs, past) || inputs.inspection.probe) return 1;
+        return std::clamp<int>(wellSampled - past.steps(), 1, parameters_.mapsAtRest);
     }
 
     FixedVector<ShadowMap, mostMaps - 1> drawFurther(Flow& flow, Scope scope, const Inputs& inputs, int step,
                                                      int count) const {
-        static constexpr std::string_view owners[] = {"temporal-2", "temporal-3", "temporal-4", "temporal-5",
-                                                      "temporal-6", "temporal-7", "temporal-8"};
+        static constexpr std::string_view owners[] = {"temporal-2",  "temporal-3",  "temporal-4", "temporal-5",
+                                                      "temporal-6",  "temporal-7",  "temporal-8", "temporal-9",
+                                                      "temporal-10", "temporal-11", "temporal-12"};
         FixedVector<ShadowMap, mostMaps - 1> maps;
         for (int i = 0; i < count; ++i)
             maps.push_back(drawShadowMap(flow, {scope.instance, owners[i]}, inputs, describeMap(inputs, step + i)));
@@ -625,7 +630,7 @@ private:
         const uint32_t point = estimates(inputs) ? i : i + 1;
         ShadowMapDescription description =
             parameters_.map.describe(central ? lightCentre : lightPoint(inputs.light, samplePoint(inputs.seed, point)));
-        description.square = false;
+        description.square = description.all = false;
         if (!central && halfSize(inputs.light) != vec2(0))
             description.shift = parameters_.sequence == Sequence::R2 ? haltonPoint(i + 1) - 0.5f : gridShift(i);
         if (moves(inputs)) signMovers(description);
@@ -676,8 +681,10 @@ private:
         StillConstants constants{historyConstants(inputs, map.view, kept, most, parameters_.lightMemory), {}};
         PassReads reads{{"shadowMap", map.depth}, {"history", past}};
         for (size_t i = 0; i < further.size(); ++i) {
-            static constexpr std::string_view names[] = {"shadowMap2", "shadowMap3", "shadowMap4", "shadowMap5",
-                                                         "shadowMap6", "shadowMap7", "shadowMap8"};
+            static constexpr std::string_view names[] = {"furtherMaps[0]", "furtherMaps[1]", "furtherMaps[2]",
+                                                         "furtherMaps[3]", "furtherMaps[4]", "furtherMaps[5]",
+                                                         "furtherMaps[6]", "furtherMaps[7]", "furtherMaps[8]",
+                                                         "furtherMaps[9]", "furtherMaps[10]"};
             constants.further[i] = {further[i].view.sample_reference, further[i].view.window};
             reads.push_back({names[i], further[i].depth});
         }

@@ -3,40 +3,22 @@
 //
 // Texture reads: depth, normal, each of the MAPS maps, and 1 (nearest) or 4 (bilinear) of the history.
 #ifdef MAPS
-#define FURTHER_MAPS /* sample_reference and window of the second map and those after it */ vec4 furtherMaps[2 * (MAPS - 1)];
+#define FURTHER_VIEWS /* sample_reference and window of the second map and those after it */ vec4 furtherViews[2 * (MAPS - 1)];
 #else
-#define FURTHER_MAPS
+#define FURTHER_VIEWS
 #endif
 #define OWN_CONSTANTS                                                                                                      \
     vec4 lastX, lastY, lastForward; /* from a place relative to the eye [m] to last frame's: d (x, y) [pixels], d [m] */   \
     vec4 lastRayCorner, lastRayDx, lastRayDy; /* of last frame's view */                                                   \
     vec4 keep; /* most samples that a history keeps: x in this frame, z if its surface moves; y = that it may have */      \
     vec4 picture; /* xy of its first pixel in the buffer */                                                                \
-    FURTHER_MAPS
+    FURTHER_VIEWS
 #include "shadow_lookup.glsl"
 #include "techniques/temporal_mixing.glsl"
 
 uniform sampler2D history; // shadowBuffer of the last frame
 #ifdef MAPS
-uniform sampler2D shadowMap2;
-#if MAPS > 2
-uniform sampler2D shadowMap3;
-#endif
-#if MAPS > 3
-uniform sampler2D shadowMap4;
-#endif
-#if MAPS > 4
-uniform sampler2D shadowMap5;
-#endif
-#if MAPS > 5
-uniform sampler2D shadowMap6;
-#endif
-#if MAPS > 6
-uniform sampler2D shadowMap7;
-#endif
-#if MAPS > 7
-uniform sampler2D shadowMap8;
-#endif
+uniform sampler2D furtherMaps[MAPS - 1];
 #endif
 #ifdef MOTION
 uniform sampler2D motion;
@@ -171,16 +153,18 @@ float withDepth(float blocker, Test test, float n)
 }
 
 #ifdef MAPS
-// What is the light's stays: the compiler then works it out once for all maps.
-void addMap(sampler2D map, int further, inout History h, inout float blocker, inout float taus)
+// A further map of the same light; the surface keeps the first one's offset along its normal.
+void addMap(sampler2D map, int further, inout Receiver r, inout History h, inout float blocker, inout float taus)
 {
-    lightView.sample_reference = furtherMaps[2 * further];
-    lightView.window = furtherMaps[2 * further + 1];
-    Test test = testIn(map, findReceiver(normalOffset));
+    lightView.sample_reference = furtherViews[2 * further];
+    lightView.window = furtherViews[2 * further + 1];
+    lookFrom(lightView.sample_reference.xy, r);
+    Test test = testIn(map, r);
     h = withSample(h, test.tau, keep.y);
     blocker = withDepth(blocker, test, h.n);
     taus += test.tau;
 }
+#define FURTHER(i) if (i < MAPS - 1) addMap(furtherMaps[min(i, MAPS - 2)], min(i, MAPS - 2), r, h, blocker, tau);
 #endif
 
 void main()
@@ -219,25 +203,9 @@ void main()
 #endif
     float blocker = withDepth(fresh ? 0.0 : past.blocker, first, h.n);
 #ifdef MAPS
-    addMap(shadowMap2, 0, h, blocker, tau);
-#if MAPS > 2
-    addMap(shadowMap3, 1, h, blocker, tau);
-#endif
-#if MAPS > 3
-    addMap(shadowMap4, 2, h, blocker, tau);
-#endif
-#if MAPS > 4
-    addMap(shadowMap5, 3, h, blocker, tau);
-#endif
-#if MAPS > 5
-    addMap(shadowMap6, 4, h, blocker, tau);
-#endif
-#if MAPS > 6
-    addMap(shadowMap7, 5, h, blocker, tau);
-#endif
-#if MAPS > 7
-    addMap(shadowMap8, 6, h, blocker, tau);
-#endif
+    // No loop: with constant indices all of it is one block of arithmetic.
+    FURTHER(0) FURTHER(1) FURTHER(2) FURTHER(3) FURTHER(4) FURTHER(5)
+    FURTHER(6) FURTHER(7) FURTHER(8) FURTHER(9) FURTHER(10)
     tau /= float(MAPS);
 #endif
     float depthTag = tagged ? -r.eyeDepth : r.eyeDepth;

@@ -138,6 +138,26 @@ TEST_CASE("a frame again reads the past of the one that it is instead of, unless
     CHECK(flow.historyLength() == 0); // nobody looks back
 }
 
+TEST_CASE("a past counts its frames, and the steps that they took") {
+    Flow flow;
+    const auto frame = [&](int steps, Turn turn = Turn::Next) {
+        flow.begin(turn);
+        const PastImage past = flow.past(a, image("history"));
+        if (steps != 1) flow.advance(past, steps);
+        PassSpec spec = compute("history", 0, {{"past", past}});
+        spec.writes = {image("history")};
+        (void)flow.pass(a, spec);
+        return std::pair(past.age(), past.steps());
+    };
+    CHECK(frame(1) == std::pair(0, 0));
+    CHECK(frame(4) == std::pair(1, 1));
+    CHECK(frame(2) == std::pair(2, 5));
+    CHECK(frame(3, Turn::Again) == std::pair(2, 5)); // instead of it
+    CHECK(frame(1) == std::pair(3, 8));
+    flow.forget();
+    CHECK(frame(1) == std::pair(0, 0));
+}
+
 TEST_CASE("a repeat accumulates under one label and forbids reading what is gone") {
     Flow flow;
     flow.begin();

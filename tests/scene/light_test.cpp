@@ -77,3 +77,20 @@ TEST_CASE("the shapes have names in their order") {
     REQUIRE(lightShapeNames().size() == 3);
     CHECK(lightShapeNames()[size_t(LightShape::Disk)] == "disk");
 }
+
+TEST_CASE("of Sobol's first 2^k points every rectangle of area 2^-k that comes of halving the sides holds one") {
+    for (const uint32_t seed : {0u, 1u, 77u})
+        for (uint32_t k = 0; k <= 8; ++k)
+            for (uint32_t columns = 0; columns <= k; ++columns) {
+                std::vector<int> held(size_t{1} << k);
+                for (uint32_t i = 0; i < 1u << k; ++i) {
+                    const glm::vec2 p = sobolPoint(i, seed);
+                    REQUIRE((p.x >= 0 && p.x < 1 && p.y >= 0 && p.y < 1));
+                    const auto x = static_cast<size_t>(p.x * float(1u << columns)),
+                               y = static_cast<size_t>(p.y * float(1u << (k - columns)));
+                    ++held[y << columns | x];
+                }
+                CHECK(std::count(held.begin(), held.end(), 1) == std::ptrdiff_t(held.size()));
+            }
+    CHECK(sobolPoint(5, 0) != sobolPoint(5, 1));
+}

@@ -88,24 +88,26 @@ TEST_CASE("instances of one technique under two lights keep apart, and equal sha
     CHECK(bench.shadowMaps() == 2);
 }
 
-TEST_CASE("a map does not swim: what lies on the reference plane stays at its texel for every sample of the light") {
+TEST_CASE("what lies on the reference plane is at the same place for every sample of the light") {
     Bench bench;
     for (const LightShape shape : {LightShape::Rectangle, LightShape::Directional}) {
         const AreaLight light{.shape = shape, .position = {1, 5, 1}, .target = {0, 0, 0}, .size = {1, 1}};
         const Inputs inputs{bench.view, light, *bench.surfaces, nullptr, 1, bench.occluders, 0, 0};
         const glm::vec2 half = halfSize(light);
         const LightViewBlock centre = lightView(inputs, {.size = 256});
-        for (const glm::vec2 s : {half, -half, glm::vec2(half.x, -half.y)}) {
-            const LightViewBlock view = lightView(inputs, {.size = 256, .sample = s});
-            CHECK(view.window == centre.window);
-            CHECK(view.range == centre.range);
-            const float f = view.sample_reference.z;
-            for (const glm::vec2 p : {glm::vec2(0.1f, 0.2f), glm::vec2(-0.4f, 0.3f)}) {
-                const glm::vec4 world = glm::inverse(view.lightFromWorld) * glm::vec4(p, -f, 1);
-                const glm::vec4 clip = view.clipFromWorld * world, before = centre.clipFromWorld * world;
-                CHECK(glm::distance(glm::vec2(clip) / clip.w, glm::vec2(before) / before.w) < 1e-4f);
+        for (const glm::vec2 s : {half, -half, glm::vec2(half.x, -half.y)})
+            for (const bool square : {true, false}) {
+                const LightViewBlock view = lightView(inputs, {.size = 256, .sample = s, .square = square});
+                CHECK(view.range == centre.range);
+                const float f = view.sample_reference.z;
+                for (const glm::vec2 p : {glm::vec2(0.1f, 0.2f), glm::vec2(-0.4f, 0.3f)}) {
+                    const glm::vec4 world = glm::inverse(view.lightFromWorld) * glm::vec4(p, -f, 1);
+                    const glm::vec4 clip = view.clipFromWorld * world;
+                    const glm::vec2 place = glm::vec2(clip) / clip.w,
+                                    expected = (p - glm::vec2(view.window)) / glm::vec2(view.window.z, view.window.w);
+                    CHECK(glm::distance(place, expected) < 1e-4f);
+                }
             }
-        }
     }
 }
 
@@ -357,6 +359,25 @@ TEST_CASE("layers 5 cm apart do not fight a kilometre away") {
         }
     CHECK(checked > 2000);
     CHECK(wrong == 0);
+}
+
+TEST_CASE("what shades nothing need not be drawn, and a test of each texel finds the same") {
+    Session s = session(std::make_shared<Scene>(importGltf(findScene("two-boxes"))), "light-sampling");
+    s.light = {.position = {0, 4, 0}, .target = {0, 0, 0}, .size = {1, 1}};
+    s.progressive = false;
+    s.techniques.assign("samples=64");
+    const ShadowImage image = draw(s);
+    const auto map = renderer().flow().find("light-sampling.shadow-map");
+    REQUIRE(map);
+    const std::vector<float> depths = renderer().read(*map).values;
+    const auto empty = std::count(depths.begin(), depths.end(), 1.0f);
+    s.techniques.choose("hard"); // whose map has the floor in it
+    draw(s);
+    const std::vector<float> all = renderer().read(*renderer().flow().find("hard.shadow-map")).values;
+    CAPTURE(empty, std::count(all.begin(), all.end(), 1.0f));
+    CHECK(std::count(all.begin(), all.end(), 1.0f) + std::ptrdiff_t(all.size() / 5) < empty);
+    const Truth truth = traceTruth(readTruthInput(renderer(), s), {.leastSamples = 256, .mostSamples = 256});
+    CHECK(errorsOf(image.psi.values, truth).all.rmse < 0.02);
 }
 
 TEST_CASE("a floor that everything stands on takes no texels where nothing does") {

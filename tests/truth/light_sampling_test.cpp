@@ -35,7 +35,7 @@ Errors errorsOf(const ClosedForm& form, glm::ivec2 size, int maps, int mapSize) 
     s.techniques.parameters().at("map-size").set(mapSize);
     std::vector<glm::dvec2> points; // light space has x along world x, y along −z
     for (int i = 0; i < maps; ++i) {
-        const glm::vec2 point = lightPoint(s.light, haltonPoint(static_cast<uint32_t>(i) + 1));
+        const glm::vec2 point = lightPoint(s.light, sobolPoint(static_cast<uint32_t>(i), 0));
         points.push_back({point.x, -point.y});
     }
     const ShadowImage image = draw(s);
