@@ -548,7 +548,6 @@ public:
         std::optional<ShadowMap> central;
         if (drawsCentre(inputs)) {
             ShadowMapDescription description = parameters_.map.describe();
-            description.square = description.all = false;
             signMovers(description);
             central = drawShadowMap(flow, {scope.instance, "temporal-centre"}, inputs, description);
         }
@@ -630,9 +629,10 @@ private:
         const uint32_t point = estimates(inputs) ? i : i + 1;
         ShadowMapDescription description =
             parameters_.map.describe(central ? lightCentre : lightPoint(inputs.light, samplePoint(inputs.seed, point)));
-        description.square = description.all = false;
-        if (!central && halfSize(inputs.light) != vec2(0))
+        if (!central && halfSize(inputs.light) != vec2(0)) { // else it is what other techniques draw, too
             description.shift = parameters_.sequence == Sequence::R2 ? haltonPoint(i + 1) - 0.5f : gridShift(i);
+            description.square = description.all = false;
+        }
         if (moves(inputs)) signMovers(description);
         return description;
     }

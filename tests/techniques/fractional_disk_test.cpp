@@ -321,7 +321,7 @@ TEST_CASE("noise falls with the number of samples, as 1/√n or faster") {
 
 TEST_CASE("accumulated frames and the neighbourhood filter take the noise away") {
     Bench b = halfPlane();
-    b.set("map-size", "256");
+    b.set("map-size", "512"); // whose texels are little beside the noise that is left
     b.set("max-samples", "8");
     const double one = profileError(b).rms;
     b.set("neighbourhood-filter", "on");
