@@ -46,7 +46,7 @@ void main()
     gl_Position = lightView.clipFromWorld * positionWorld;
 #ifdef NEEDLESS
     uint thing = uint(drawObject) - 1u;
-    if (thing < 128u && (needless[thing >> 5] >> (thing & 31u) & 1u) != 0u) gl_Position = vec4(2.0, 2.0, 2.0, 1.0);
+    if (thing < 32u * uint(needless.length()) && (needless[thing >> 5] >> (thing & 31u) & 1u) != 0u) gl_Position = vec4(2.0, 2.0, 2.0, 1.0);
 #endif
 #ifdef SIGN_MOVERS
     bool moved = lastPositionModel != positionModel;

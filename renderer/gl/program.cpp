@@ -190,12 +190,14 @@ void ProgramLibrary::build(Entry& entry) const {
     });
     for (const Uniform& uniform : found) {
         auto& bindings = uniform.image ? program.images_ : program.samplers_;
-        for (int i = 0; i < uniform.count; ++i) { // of an array called "name[0]"
+        const size_t bracket = uniform.name.find('['); // an array is called "name[0]"
+        for (int i = 0; i < uniform.count; ++i) {
             const GLuint unit = static_cast<GLuint>(bindings.size());
             glProgramUniform1i(name, uniform.location + i, static_cast<GLint>(unit));
-            const std::string_view base = std::string_view(uniform.name).substr(0, uniform.name.find('['));
-            bindings.push_back(
-                {uniform.count > 1 || base != uniform.name ? fmt::format("{}[{}]", base, i) : uniform.name, unit});
+            bindings.push_back({bracket == std::string::npos
+                                    ? uniform.name
+                                    : fmt::format("{}[{}]", std::string_view(uniform.name).substr(0, bracket), i),
+                                unit});
         }
     }
     GLint blocks = 0;

@@ -39,7 +39,8 @@ public:
     const std::vector<Binding>& tileSets() const { return tileSets_; } // by the name of the set
     // Of the uniform that says where a band of a compute pass begins, see shaders/band.glsl; −1: it has none.
     GLint bandOrigin() const { return bandOrigin_; }
-    // Whether the source text says this word, or this array's: a read that no variant of the shader could use is a mistake.
+    // Whether the source text says this word, or this array's: a read that no variant of the shader could use is a
+    // mistake.
     bool mentions(std::string_view word) const;
 
 private:

@@ -283,9 +283,9 @@ std::span<const ProbePlot> kernelPlots() {
     static constexpr ProbePlot plots[] = {
         {ProbePlot::Kind::Curves, "The kernel's depths",
          "What share of the kernel lies in front of a depth. Heavy: what this technique makes of it, from its own map "
-         "and "
-         "as it is set. Thin: what every member of the family makes of its means of the same depths, kept as 32-bit "
-         "floats, with textbook values. Solid: never above F. Where a curve crosses the fragment's line is its ψ.",
+         "and as it is set. Thin: what every member of the family makes of its means of the same depths, kept as "
+         "32-bit floats, with textbook values. Solid: never above F. Where a curve crosses the fragment's line is its "
+         "ψ.",
          kernelSeries, "Depth z", "ψ"}};
     return plots;
 }

@@ -246,7 +246,7 @@ MapFit fitMap(const AreaLight& light, std::span<const Occluder> occluders, const
         return std::any_of(corners.begin(), corners.end(), [&](vec3 c) { return directional || c.z >= fit.near; });
     };
     const auto bit = [](int object) { return 1u << ((object - 1) % 32); };
-    const auto known = [](int object) { return object > 0 && object <= 128; };
+    const auto known = [](int object) { return object > 0 && object <= int(8 * sizeof(glm::uvec4)); };
     glm::uvec4 shading(0);
     Window casters, receivers;
     const Bounds points = lightBounds(light);
@@ -281,12 +281,9 @@ MapFit fitMap(const AreaLight& light, std::span<const Occluder> occluders, const
     return fit;
 }
 
-} // namespace
-
-vec2 gridShift(uint32_t i) { return r2Point(i) - 0.5f; }
-
-static std::pair<LightViewBlock, glm::uvec4> fittedView(const AreaLight& light, std::span<const Occluder> occluders,
-                                                        const ShadowMapDescription& description, const View* view) {
+// And what an averaged map leaves out.
+std::pair<LightViewBlock, glm::uvec4> fittedView(const AreaLight& light, std::span<const Occluder> occluders,
+                                                 const ShadowMapDescription& description, const View* view) {
     const LightSample s = description.sample;
     const int size = description.size;
     const bool directional = light.shape == LightShape::Directional, radial = description.metric != Metric::Axial;
@@ -299,7 +296,7 @@ static std::pair<LightViewBlock, glm::uvec4> fittedView(const AreaLight& light, 
     // A border of empty texels, whole after a shift too.
     vec2 side = fit.window.max - fit.window.min;
     const float longest = std::max(side.x, side.y);
-    side = description.square ? vec2(longest) : glm::max(side, vec2(1e-3f * longest));
+    side = description.averaged ? glm::max(side, vec2(1e-3f * longest)) : vec2(longest);
     const int filled = size - 2 * description.border - (description.shift != vec2(0) ? 1 : 0);
     const vec2 h = side * (0.5f * static_cast<float>(size) / static_cast<float>(std::max(filled, 1)));
     const vec2 centre =
@@ -333,6 +330,10 @@ static std::pair<LightViewBlock, glm::uvec4> fittedView(const AreaLight& light, 
     block.light = {half, size, 1.0f / static_cast<float>(size)};
     return {block, fit.needless};
 }
+
+} // namespace
+
+vec2 gridShift(uint32_t i) { return r2Point(i) - 0.5f; }
 
 LightViewBlock lightView(const AreaLight& light, std::span<const Occluder> occluders,
                          const ShadowMapDescription& description, const View* view) {
@@ -398,7 +399,7 @@ ShadowMap drawShadowMap(Flow& flow, Scope scope, const Inputs& inputs, const Sha
     }
     if (description.signMovers) draw.defines.push_back({"SIGN_MOVERS"});
     PassSpec pass{.stage = Stage::ShadowMap, .name = name, .constants = view};
-    if (!description.all && needless != glm::uvec4(0)) {
+    if (description.averaged && needless != glm::uvec4(0)) {
         draw.defines.push_back({"NEEDLESS"});
         pass.constants = NeedlessConstants{view, needless};
     }

@@ -33,8 +33,9 @@ struct ShadowMapDescription {
     // Moves the grid of texels by at most half a texel: without it the maps of a light have much the same grid on the
     // reference plane, and the mean of many keeps the rounding of each.
     glm::vec2 shift{0, 0};
-    bool square = true; // texels are; else each side of the window is as long as it must be
-    bool all = true;    // things that shade nothing are drawn, too: filtered maps need what lies behind their blockers
+    // One of many whose tests are averaged, texel by texel: each side of the window is only as long as it must be, and
+    // what shades nothing is not drawn. Filtered maps need square texels and what lies behind their blockers.
+    bool averaged = false;
     int border = 1; // texels along the edge that stay empty: a lookup outside is clamped to them and finds no caster
     bool objects = false;    // an image of the numbers of the things that cast, too
     bool signMovers = false; // depth is negative where a caster's pose differs from the last frame's; needs R32F

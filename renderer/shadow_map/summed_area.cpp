@@ -104,10 +104,9 @@ std::span<const ProbePlot> windowPlots() {
                                              {"kernel-depths.psi", "ψ, as it is set", ProbeMark::Heavy}};
     static constexpr ProbePlot plots[] = {
         {ProbePlot::Kind::Curves, "The window's depths",
-         "What share of the window that the filter takes lies in front of a depth, each held against the receiver's "
-         "own "
-         "plane, and what the moments of the window's cells make of it. Heavy: as it is set. Where a curve crosses the "
-         "fragment's line is its ψ.",
+         "What share of the window that the filter takes lies in front of a depth, each held against the "
+         "receiver's own plane, and what the moments of the window's cells make of it. Heavy: as it is set. Where a "
+         "curve crosses the fragment's line is its ψ.",
          series, "Depth z", "ψ"}};
     return plots;
 }

@@ -72,7 +72,7 @@ public:
         flow.repeat(std::min(perFrame, samples - done), [&](int i) {
             ShadowMapDescription description =
                 parameters_.map.describe(lightPoint(inputs.light, samplePoint(inputs.seed, done + i)));
-            description.square = description.all = false;
+            description.averaged = true;
             description.shift = gridShift(static_cast<uint32_t>(done + i));
             const ShadowMap map = drawShadowMap(flow, scope, inputs, description);
             counted = count(flow, scope, inputs, map, counted);

@@ -418,7 +418,6 @@ struct Parameters : ParameterSet {
                         .value = 1,
                         .min = 1,
                         .max = mostMaps,
-                        .unit = Unit::Samples,
                         .source = "Scherzer 2009 (1)",
                         .help =
                             "Shadow maps a frame, and as many tests, while nothing changes and until there are 256. "
@@ -631,7 +630,7 @@ private:
             parameters_.map.describe(central ? lightCentre : lightPoint(inputs.light, samplePoint(inputs.seed, point)));
         if (!central && halfSize(inputs.light) != vec2(0)) { // else it is what other techniques draw, too
             description.shift = parameters_.sequence == Sequence::R2 ? haltonPoint(i + 1) - 0.5f : gridShift(i);
-            description.square = description.all = false;
+            description.averaged = true;
         }
         if (moves(inputs)) signMovers(description);
         return description;

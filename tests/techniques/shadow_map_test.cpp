@@ -96,8 +96,8 @@ TEST_CASE("what lies on the reference plane is at the same place for every sampl
         const glm::vec2 half = halfSize(light);
         const LightViewBlock centre = lightView(inputs, {.size = 256});
         for (const glm::vec2 s : {half, -half, glm::vec2(half.x, -half.y)})
-            for (const bool square : {true, false}) {
-                const LightViewBlock view = lightView(inputs, {.size = 256, .sample = s, .square = square});
+            for (const bool averaged : {false, true}) {
+                const LightViewBlock view = lightView(inputs, {.size = 256, .sample = s, .averaged = averaged});
                 CHECK(view.range == centre.range);
                 const float f = view.sample_reference.z;
                 for (const glm::vec2 p : {glm::vec2(0.1f, 0.2f), glm::vec2(-0.4f, 0.3f)}) {
